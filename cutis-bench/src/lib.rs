@@ -1,0 +1,1 @@
+//! Benches of cutis live in `benches/`; this library is empty on purpose.

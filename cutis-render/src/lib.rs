@@ -1,0 +1,1 @@
+//! How it is drawn: settings, passes, techniques and film, on the CPU.

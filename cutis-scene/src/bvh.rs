@@ -1,0 +1,101 @@
+//! Rays against the whole scene: an eight-wide compressed hierarchy (obvhs) over the triangles of all objects.
+
+use crate::Object;
+use glam::{Vec3, Vec3A};
+use obvhs::BvhBuildParams;
+use obvhs::cwbvh::CwBvh;
+use obvhs::cwbvh::builder::build_cwbvh_from_tris;
+use obvhs::ray::{Ray, RayHit};
+use obvhs::triangle::Triangle;
+
+/// The acceleration structure of a scene.
+pub struct Bvh {
+    tree: CwBvh,
+    /// Triangles in the tree's own order.
+    triangles: Vec<Triangle>,
+    /// Object and triangle of each entry above.
+    sources: Vec<[u32; 2]>,
+    /// Step off the surface that rounding cannot undo, mm.
+    offset_mm: f32,
+}
+
+/// Where a ray met a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// Index of the object in the scene.
+    pub object: u32,
+    /// Index of the triangle in the object's mesh.
+    pub triangle: u32,
+    /// Barycentric weight of the triangle's second corner.
+    pub b1: f32,
+    /// Barycentric weight of the triangle's third corner.
+    pub b2: f32,
+    /// Distance from the ray's origin, mm.
+    pub distance_mm: f32,
+}
+
+impl Bvh {
+    /// Builds the hierarchy over all triangles.
+    pub fn build(objects: &[Object]) -> Self {
+        let mut triangles = Vec::new();
+        let mut sources = Vec::new();
+        for (o, object) in objects.iter().enumerate() {
+            for t in 0..object.mesh.triangles.len() {
+                let [v0, v1, v2] = object.mesh.corners_mm(t).map(Vec3A::from);
+                triangles.push(Triangle { v0, v1, v2 });
+                sources.push([o as u32, t as u32]);
+            }
+        }
+        let extent_mm = triangles.iter().fold(0.0f32, |m, t| m.max(t.v0.abs().max_element()));
+        let mut time = std::time::Duration::ZERO;
+        let tree = build_cwbvh_from_tris(&triangles, BvhBuildParams::medium_build(), &mut time);
+        let order = |i: &u32| *i as usize;
+        Self {
+            triangles: tree.primitive_indices.iter().map(|i| triangles[order(i)]).collect(),
+            sources: tree.primitive_indices.iter().map(|i| sources[order(i)]).collect(),
+            tree,
+            // 2^-18 is 32 times the rounding of a coordinate: enough for a ray's whole arithmetic.
+            offset_mm: 1e-4 + extent_mm / 262_144.0,
+        }
+    }
+
+    /// The nearest surface along a ray, up to `max_mm`. `dir` is a unit vector.
+    pub fn closest(&self, origin_mm: Vec3, dir: Vec3, max_mm: f32) -> Option<Hit> {
+        let ray = Ray::new(origin_mm.into(), dir.into(), 0.0, max_mm);
+        let mut hit = RayHit::none();
+        if !self.tree.ray_traverse(ray, &mut hit, |ray, id| self.triangles[id].intersect(ray)) {
+            return None;
+        }
+        let id = hit.primitive_id as usize;
+        let [object, triangle] = self.sources[id];
+        let (b1, b2) = barycentric(&self.triangles[id], origin_mm + dir * hit.t);
+        Some(Hit { object, triangle, b1, b2, distance_mm: hit.t })
+    }
+
+    /// Whether anything lies within `max_mm` along a ray.
+    pub fn occluded(&self, origin_mm: Vec3, dir: Vec3, max_mm: f32) -> bool {
+        let ray = Ray::new(origin_mm.into(), dir.into(), 0.0, max_mm);
+        let mut hit = RayHit::none();
+        self.tree.ray_traverse(ray, &mut hit, |ray, id| self.triangles[id].intersect(ray))
+    }
+
+    /// A start for rays that leave the surface on the side of `normal`.
+    pub fn step_off(&self, position_mm: Vec3, normal: Vec3) -> Vec3 {
+        position_mm + normal * self.offset_mm
+    }
+}
+
+/// Barycentric weights of the second and third corner for a point of the triangle's plane.
+fn barycentric(triangle: &Triangle, point_mm: Vec3) -> (f32, f32) {
+    let [origin, v1, v2] = [triangle.v0, triangle.v1, triangle.v2].map(Vec3::from);
+    let (e1, e2, p) = (v1 - origin, v2 - origin, point_mm - origin);
+    let (d11, d12, d22) = (e1.dot(e1), e1.dot(e2), e2.dot(e2));
+    let (p1, p2) = (p.dot(e1), p.dot(e2));
+    let determinant = d11 * d22 - d12 * d12;
+    if determinant <= 0.0 {
+        return (0.0, 0.0); // a triangle without area: any corner will do
+    }
+    let b1 = ((d22 * p1 - d12 * p2) / determinant).clamp(0.0, 1.0);
+    let b2 = ((d11 * p2 - d12 * p1) / determinant).clamp(0.0, 1.0 - b1);
+    (b1, b2)
+}

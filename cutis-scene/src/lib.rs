@@ -1,0 +1,34 @@
+//! What is lit: meshes with their UV charts, textures, lights, camera, and the readers that bring them in.
+//!
+//! A [`Scene`] is complete and believed: every reader checks what it reads, converts lengths to millimetres and
+//! colours to linear Rec. 709, and ends in a [`SceneError`] that names file, place and reason where it cannot.
+//! Nothing here draws; `cutis-render` does.
+
+pub mod bvh;
+pub mod camera;
+pub mod charts;
+pub mod environment;
+pub mod error;
+pub mod head;
+pub mod light;
+pub mod material;
+pub mod mesh;
+pub mod object;
+pub mod read;
+pub mod tangents;
+pub mod texture;
+pub mod topology;
+
+mod scene;
+
+pub use bvh::{Bvh, Hit};
+pub use camera::Camera;
+pub use charts::Charts;
+pub use environment::Environment;
+pub use error::SceneError;
+pub use light::{Light, LightSample};
+pub use material::{ColourMap, Material, NormalMap, NormalSpace, ScalarMap, Scattering};
+pub use mesh::{Mesh, MorphTarget};
+pub use object::{Object, SurfacePoint};
+pub use scene::Scene;
+pub use texture::{Texels, Texture};

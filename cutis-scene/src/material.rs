@@ -1,0 +1,136 @@
+//! What a surface is made of: how it scatters, its colour, its relief and its shine.
+
+use crate::texture::Texture;
+use cutis_optics::{Medium, RgbGaussianSum};
+use glam::{Vec2, Vec3, Vec4};
+use std::sync::Arc;
+
+/// How light spreads under the surface.
+#[derive(Debug, Clone)]
+pub enum Scattering {
+    /// A name from `cutis presets`.
+    Preset(String),
+    /// A homogeneous medium per channel (red, green, blue), seen through the dipole.
+    Medium([Medium; 3]),
+    /// A finished diffusion kernel.
+    Kernel(RgbGaussianSum),
+}
+
+/// Linear colour: a factor, times a texture where there is one.
+#[derive(Debug, Clone)]
+pub struct ColourMap {
+    /// Linear Rec. 709 factor.
+    pub factor: Vec3,
+    /// Texture whose rgb multiplies the factor.
+    pub texture: Option<Arc<Texture>>,
+}
+
+/// One number over the surface: `offset + gain * tap[channel]`, or just `offset` without a texture.
+#[derive(Debug, Clone)]
+pub struct ScalarMap {
+    /// Value where the texture is 0.
+    pub offset: f32,
+    /// Added where the texture is 1.
+    pub gain: f32,
+    /// Texture and the channel (0 red … 3 alpha) that is read.
+    pub texture: Option<(Arc<Texture>, usize)>,
+}
+
+/// The space in which a normal map's vectors are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NormalSpace {
+    /// Relative to the tangent frame of the mesh (MikkTSpace).
+    Tangent,
+    /// Relative to the mesh's own axes.
+    Object,
+}
+
+/// A texture of unit vectors, stored as `0.5 + 0.5 n`.
+#[derive(Debug, Clone)]
+pub struct NormalMap {
+    /// Linear texture; rgb is xyz, green points along +v of the *image flipped* (OpenGL convention, as in glTF).
+    pub texture: Arc<Texture>,
+    /// Space of the vectors.
+    pub space: NormalSpace,
+    /// Factor on x and y: 0 flat, 1 as stored.
+    pub strength: f32,
+}
+
+/// Everything a technique needs to know of a surface.
+#[derive(Debug, Clone)]
+pub struct Material {
+    /// Name for messages.
+    pub name: String,
+    /// Diffusion under the surface.
+    pub scattering: Scattering,
+    /// Diffuse colour of the skin as seen (d'Eon et al. 2007, section 5.3): an absorbing film, passed twice.
+    pub albedo: ColourMap,
+    /// Exponent of the albedo on the way in; `1 - albedo_mix` on the way out. 0.5 in the paper.
+    pub albedo_mix: f32,
+    /// Relief finer than the mesh.
+    pub normal: Option<NormalMap>,
+    /// Specular intensity rho_s of the Kelemen–Szirmay-Kalos lobe.
+    pub rho_s: ScalarMap,
+    /// Beckmann roughness m of that lobe.
+    pub roughness: ScalarMap,
+    /// Fresnel reflectance at normal incidence; 0.028 for skin (index 1.4).
+    pub f0: f32,
+}
+
+impl Default for Material {
+    /// Plain skin: the three-layer kernel, a mid skin tone, no maps.
+    fn default() -> Self {
+        Self {
+            name: "skin".to_owned(),
+            scattering: Scattering::Preset("three-layer-skin".to_owned()),
+            albedo: ColourMap { factor: Vec3::new(0.75, 0.48, 0.36), texture: None },
+            albedo_mix: 0.5,
+            normal: None,
+            rho_s: ScalarMap::constant(1.0),
+            roughness: ScalarMap::constant(0.3),
+            f0: 0.028,
+        }
+    }
+}
+
+impl ColourMap {
+    /// Linear colour at `uv`.
+    pub fn at(&self, uv: Vec2) -> Vec3 {
+        match &self.texture {
+            Some(texture) => self.factor * texture.sample(uv).truncate(),
+            None => self.factor,
+        }
+    }
+}
+
+impl ScalarMap {
+    /// The same value everywhere.
+    pub fn constant(value: f32) -> Self {
+        Self { offset: value, gain: 0.0, texture: None }
+    }
+
+    /// Value at `uv`.
+    pub fn at(&self, uv: Vec2) -> f32 {
+        match &self.texture {
+            Some((texture, channel)) => self.offset + self.gain * texture.sample(uv)[*channel],
+            None => self.offset,
+        }
+    }
+}
+
+impl NormalMap {
+    /// Unit normal in world space at `uv`, given the interpolated frame of the mesh.
+    pub fn at(&self, uv: Vec2, normal: Vec3, tangent: Vec4) -> Vec3 {
+        let stored = self.texture.sample(uv).truncate() * 2.0 - Vec3::ONE;
+        match self.space {
+            NormalSpace::Object => normal.lerp(stored, self.strength).normalize_or(normal),
+            NormalSpace::Tangent => {
+                let t = tangent.truncate();
+                let b = normal.cross(t) * tangent.w;
+                let bent =
+                    t * (stored.x * self.strength) + b * (stored.y * self.strength) + normal * stored.z;
+                bent.normalize_or(normal)
+            }
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! A mesh made ready to be drawn: welded, charted, with normals and tangents, and its material.
+
+use crate::charts::Charts;
+use crate::tangents::add_tangents;
+use crate::topology::{is_closed, smooth_normals, weld};
+use crate::{Material, Mesh};
+use glam::{Vec2, Vec3, Vec4};
+
+/// One surface of the scene with one texture atlas.
+#[derive(Debug, Clone)]
+pub struct Object {
+    /// Name for messages.
+    pub name: String,
+    /// The mesh; normals and tangents are filled in.
+    pub mesh: Mesh,
+    /// Point of the welded surface each vertex belongs to.
+    pub point_of_vertex: Vec<u32>,
+    /// UV charts and seams.
+    pub charts: Charts,
+    /// Whether the surface encloses a body.
+    pub closed: bool,
+    /// What it is made of.
+    pub material: Material,
+}
+
+/// The surface at one place of a triangle.
+#[derive(Debug, Clone, Copy)]
+pub struct SurfacePoint {
+    /// On the flat triangle, mm.
+    pub position_mm: Vec3,
+    /// The same place lifted towards the smooth surface the normals describe, mm (see [`Object::surface_point`]).
+    pub lifted_position_mm: Vec3,
+    /// Unit normal of the flat triangle.
+    pub flat_normal: Vec3,
+    /// Interpolated unit normal.
+    pub normal: Vec3,
+    /// Interpolated tangent, `w` the handedness.
+    pub tangent: Vec4,
+    /// Texture coordinates.
+    pub uv: Vec2,
+}
+
+impl Object {
+    /// Welds the mesh, finds its charts and computes the normals and tangents it lacks.
+    ///
+    /// # Panics
+    /// If the mesh breaks its invariants: one UV per vertex, indices in range, finite positions. Readers check these.
+    pub fn new(name: impl Into<String>, mut mesh: Mesh, material: Material) -> Self {
+        assert_eq!(mesh.uvs.len(), mesh.positions_mm.len(), "every vertex has texture coordinates");
+        if mesh.normals.len() != mesh.positions_mm.len() {
+            mesh.normals = smooth_normals(&mesh, &weld(&mesh.positions_mm));
+        }
+        if mesh.tangents.len() != mesh.positions_mm.len() {
+            add_tangents(&mut mesh);
+        }
+        let point_of_vertex = weld(&mesh.positions_mm);
+        Self {
+            name: name.into(),
+            charts: Charts::find(&mesh, &point_of_vertex),
+            closed: is_closed(&mesh, &point_of_vertex),
+            point_of_vertex,
+            mesh,
+            material,
+        }
+    }
+
+    /// The surface at barycentric coordinates `(b1, b2)` of a triangle (weights of its second and third corner).
+    ///
+    /// The lifted position is where shadow rays should start: the flat facets of a coarse mesh would otherwise shade
+    /// themselves near the terminator. It is the mean, by barycentric weights, of the projections onto the corners'
+    /// tangent planes (Hanika 2021, "Hacking the shadow terminator", Ray Tracing Gems II ch. 4).
+    pub fn surface_point(&self, triangle: u32, b1: f32, b2: f32) -> SurfacePoint {
+        let mesh = &self.mesh;
+        let vertices = mesh.triangles[triangle as usize].map(|v| v as usize);
+        let weights = [1.0 - b1 - b2, b1, b2];
+        let corners = vertices.map(|v| mesh.positions_mm[v]);
+        let normals = vertices.map(|v| mesh.normals[v]);
+        let mix3 =
+            |values: [Vec3; 3]| values[0] * weights[0] + values[1] * weights[1] + values[2] * weights[2];
+        let position_mm = mix3(corners);
+        let flat_normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or(normals[0]);
+        let lift = |i: usize| -normals[i] * (position_mm - corners[i]).dot(normals[i]).min(0.0);
+        let tangent = (0..3).fold(Vec4::ZERO, |sum, i| sum + mesh.tangents[vertices[i]] * weights[i]);
+        let uv = (0..3).fold(Vec2::ZERO, |sum, i| sum + mesh.uvs[vertices[i]] * weights[i]);
+        let normal = mix3(normals).normalize_or(flat_normal);
+        SurfacePoint {
+            position_mm,
+            lifted_position_mm: position_mm + mix3([lift(0), lift(1), lift(2)]),
+            flat_normal,
+            normal,
+            tangent: orthonormal_tangent(tangent, normal),
+            uv,
+        }
+    }
+}
+
+fn orthonormal_tangent(tangent: Vec4, normal: Vec3) -> Vec4 {
+    let t = tangent.truncate();
+    let t = (t - normal * normal.dot(t)).normalize_or(normal.any_orthonormal_vector());
+    t.extend(if tangent.w < 0.0 { -1.0 } else { 1.0 })
+}

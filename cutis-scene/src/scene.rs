@@ -1,0 +1,27 @@
+//! The whole of what is there to be drawn.
+
+use crate::{Camera, Environment, Light, Object};
+use glam::Vec3;
+
+/// Objects, lights and the camera; nothing about how they are drawn.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// Meshes with their materials.
+    pub objects: Vec<Object>,
+    /// Lights with a direction.
+    pub lights: Vec<Light>,
+    /// Light from all around.
+    pub environment: Option<Environment>,
+    /// Where the picture is taken from.
+    pub camera: Camera,
+    /// Things that were guessed or left out while reading, in words, for the person who runs the program.
+    pub warnings: Vec<String>,
+}
+
+impl Scene {
+    /// Smallest box around all objects, mm. `None` for an empty scene.
+    pub fn bounds_mm(&self) -> Option<[Vec3; 2]> {
+        let boxes = self.objects.iter().filter_map(|object| object.mesh.bounds_mm());
+        boxes.reduce(|[lo, hi], [l, h]| [lo.min(l), hi.max(h)])
+    }
+}

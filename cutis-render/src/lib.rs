@@ -1,1 +1,19 @@
-//! How it is drawn: settings, passes, techniques and film, on the CPU.
+//! How it is drawn: settings, prepared tables, passes, techniques and film, all on the CPU.
+//!
+//! The public act is [`Renderer::render`]: a [`cutis_scene::Scene`] and [`Settings`] in, a [`Frame`] of linear light
+//! out. [`film`] turns the frame into a picture.
+
+pub mod film;
+pub mod frame;
+pub mod passes;
+pub mod prepare;
+pub mod progress;
+pub mod settings;
+pub mod technique;
+
+mod renderer;
+
+pub use frame::{Frame, Layer, PassTime};
+pub use progress::{Progress, Silent};
+pub use renderer::{CpuRenderer, RenderError, Renderer};
+pub use settings::{Aov, AovSpace, Diffusion, Settings, TechniqueName};

@@ -1,0 +1,18 @@
+//! How far the work is, for whoever watches.
+
+/// Told by the passes how far they are. Called from many threads.
+pub trait Progress: Sync {
+    /// A pass of `steps` equal steps begins.
+    fn begin(&self, pass: &str, steps: u64);
+    /// Some steps of the current pass are done.
+    fn advance(&self, steps: u64);
+}
+
+/// Tells nobody.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Silent;
+
+impl Progress for Silent {
+    fn begin(&self, _pass: &str, _steps: u64) {}
+    fn advance(&self, _steps: u64) {}
+}

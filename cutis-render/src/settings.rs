@@ -1,0 +1,194 @@
+//! How a scene is to be drawn.
+
+use crate::RenderError;
+use std::fmt;
+use std::str::FromStr;
+
+/// Everything that is chosen about the drawing and not about the scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Which of the published methods draws the picture.
+    pub technique: TechniqueName,
+    /// Operator that spreads light over the surface.
+    pub diffusion: Diffusion,
+    /// Width of the picture, pixels.
+    pub width: u32,
+    /// Height of the picture, pixels.
+    pub height: u32,
+    /// Samples per pixel; rounded up to a square number and laid out as a jittered grid.
+    pub samples_per_pixel: u32,
+    /// Width and height of the texture that holds the irradiance of the largest object, texels.
+    pub irradiance_size: u32,
+    /// Gaussians in the kernel of a material that is given by its coefficients.
+    pub gaussians: usize,
+    /// Shadow rays per texel and per picture sample towards a light with an extent.
+    pub shadow_samples: u32,
+    /// Ambient-occlusion rays per texel of the (smaller) occlusion map.
+    pub ambient_samples: u32,
+    /// Seed of every random choice: the same seed and scene give the same bits.
+    pub seed: u64,
+    /// Layers wanted beside the picture.
+    pub aovs: Vec<Aov>,
+    /// Whether those layers are seen through the camera or as the textures they are.
+    pub aov_space: AovSpace,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            technique: TechniqueName::TextureSpace,
+            diffusion: Diffusion::Separable,
+            width: 1024,
+            height: 1024,
+            samples_per_pixel: 4,
+            irradiance_size: 2048,
+            gaussians: 6,
+            shadow_samples: 4,
+            ambient_samples: 64,
+            seed: 1,
+            aovs: Vec::new(),
+            aov_space: AovSpace::Picture,
+        }
+    }
+}
+
+/// Largest side of a picture or texture: 16384² texels of four floats are 4 GiB.
+const MAX_SIZE: u32 = 16_384;
+
+impl Settings {
+    /// Checks every setting against its range.
+    ///
+    /// # Errors
+    /// Names the first setting that is out of its range.
+    pub fn check(&self) -> Result<(), RenderError> {
+        let in_range = |name, value: u32, lo: u32, hi: u32, range| {
+            let bad = || RenderError::BadSetting { name, range, value: value.to_string() };
+            if (lo..=hi).contains(&value) { Ok(()) } else { Err(bad()) }
+        };
+        in_range("width", self.width, 1, MAX_SIZE, "1 to 16384 pixels")?;
+        in_range("height", self.height, 1, MAX_SIZE, "1 to 16384 pixels")?;
+        in_range("samples per pixel", self.samples_per_pixel, 1, 4096, "1 to 4096")?;
+        in_range("irradiance size", self.irradiance_size, 16, MAX_SIZE, "16 to 16384 texels")?;
+        in_range("gaussians", self.gaussians as u32, 1, 16, "1 to 16")?;
+        in_range("shadow samples", self.shadow_samples, 1, 1024, "1 to 1024")?;
+        in_range("ambient samples", self.ambient_samples, 1, 4096, "1 to 4096")
+    }
+}
+
+/// The published methods this renderer knows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TechniqueName {
+    /// Sums of Gaussians in texture space with translucent shadows (d'Eon, Luebke & Enderton 2007).
+    TextureSpace,
+}
+
+/// Operators that spread irradiance over the surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Diffusion {
+    /// None: the surface is opaque. What diffusion does is best seen against this.
+    None,
+    /// Seven-tap blurs along u and v, scaled by the local stretch (d'Eon, Luebke & Enderton 2007, section 5.1).
+    Separable,
+}
+
+/// Where the layers beside the picture live.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AovSpace {
+    /// Seen through the camera, as large as the picture.
+    Picture,
+    /// As the texture of the first object, as large as the pass made it.
+    Texture,
+}
+
+/// A layer that can be written beside the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Aov {
+    /// Irradiance under the surface before any blur, W/m² (rgb).
+    Irradiance,
+    /// Millimetres per texel of the irradiance map along u and v.
+    Stretch,
+    /// Irradiance blurred by the n-th Gaussian, W/m² (rgb).
+    Blur(u8),
+    /// Distance through the body towards each of the first four lights, mm.
+    Thickness,
+    /// Shading normal in world space.
+    Normal,
+    /// Diffuse colour, linear.
+    Albedo,
+    /// Radiance reflected by the surface itself.
+    Specular,
+    /// Radiance that came through the body.
+    Transmission,
+    /// Number of the UV chart.
+    Charts,
+}
+
+/// Gaussians a kernel can have at most in the `blurN` layers.
+const BLUR_LAYERS: u8 = 6;
+
+impl Aov {
+    /// All layers, in the order of the passes.
+    pub fn all() -> Vec<Aov> {
+        let blurs = (0..BLUR_LAYERS).map(Aov::Blur);
+        let before = [Aov::Irradiance, Aov::Stretch];
+        let after = [Aov::Thickness, Aov::Normal, Aov::Albedo, Aov::Specular, Aov::Transmission, Aov::Charts];
+        before.into_iter().chain(blurs).chain(after).collect()
+    }
+}
+
+impl fmt::Display for Aov {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Aov::Irradiance => f.write_str("irradiance"),
+            Aov::Stretch => f.write_str("stretch"),
+            Aov::Blur(level) => write!(f, "blur{level}"),
+            Aov::Thickness => f.write_str("thickness"),
+            Aov::Normal => f.write_str("normal"),
+            Aov::Albedo => f.write_str("albedo"),
+            Aov::Specular => f.write_str("specular"),
+            Aov::Transmission => f.write_str("transmission"),
+            Aov::Charts => f.write_str("charts"),
+        }
+    }
+}
+
+impl FromStr for Aov {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        Aov::all().into_iter().find(|aov| aov.to_string() == name).ok_or_else(|| {
+            let names: Vec<_> = Aov::all().iter().map(Aov::to_string).collect();
+            format!("there is no layer '{name}'; there are {}", names.join(", "))
+        })
+    }
+}
+
+impl fmt::Display for TechniqueName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            TechniqueName::TextureSpace => f.write_str("texture-space"),
+        }
+    }
+}
+
+impl fmt::Display for Diffusion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Diffusion::None => f.write_str("none"),
+            Diffusion::Separable => f.write_str("separable"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn layer_names_are_read_back() {
+        for aov in Aov::all() {
+            assert_eq!(aov.to_string().parse(), Ok(aov));
+        }
+        assert!("blur6".parse::<Aov>().is_err());
+    }
+}

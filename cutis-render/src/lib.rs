@@ -8,7 +8,9 @@ pub mod frame;
 pub mod passes;
 pub mod prepare;
 pub mod progress;
+pub mod sampling;
 pub mod settings;
+pub mod specular_brdf;
 pub mod technique;
 
 mod renderer;

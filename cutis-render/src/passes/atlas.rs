@@ -1,0 +1,253 @@
+//! The surface unrolled: for every texel of an object's texture the triangle under it, and for every coarser level of
+//! that texture which chart a texel belongs to and how far it is from that chart's edge.
+//!
+//! A texel belongs to the triangle that covers its centre. Around every chart two more rings of texels are *padded*:
+//! they repeat the nearest point of the chart's edge, so that a bilinear read near the edge finds values of its own
+//! surface. A read never mixes charts: it leaves out neighbours that belong to another one.
+
+use cutis_scene::{Object, SurfacePoint};
+use glam::{Vec2, Vec4};
+use rayon::prelude::*;
+
+/// Marks a texel that no chart covers.
+pub const NO_CHART: u32 = u32::MAX;
+
+/// Rings of padding around every chart, texels.
+const PADDING: usize = 2;
+
+/// Rows of texels that one task rasterises.
+const BAND_ROWS: usize = 32;
+
+/// Where a texel lies on the mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TexelSurface {
+    /// Triangle, or [`NO_CHART`] for an empty texel.
+    pub triangle: u32,
+    /// Barycentric weight of the triangle's second corner.
+    pub b1: f32,
+    /// Barycentric weight of the triangle's third corner.
+    pub b2: f32,
+}
+
+/// A texel that nothing covers.
+const EMPTY: TexelSurface = TexelSurface { triangle: NO_CHART, b1: 0.0, b2: 0.0 };
+
+/// The unrolled surface at full size.
+#[derive(Debug, Clone)]
+pub struct Atlas {
+    /// Width and height in texels.
+    pub size: usize,
+    /// Place of each texel on the mesh.
+    pub surface: Vec<TexelSurface>,
+    /// Chart of each texel.
+    pub charts: ChartMap,
+}
+
+/// Which chart every texel of a square map belongs to.
+#[derive(Debug, Clone)]
+pub struct ChartMap {
+    /// Width and height in texels.
+    pub size: usize,
+    /// Chart of each texel, or [`NO_CHART`].
+    pub chart: Vec<u32>,
+    /// Along u: texels of the same chart on both sides without a gap, the smaller of the two.
+    pub reach_u: Vec<u16>,
+    /// The same along v.
+    pub reach_v: Vec<u16>,
+}
+
+impl Atlas {
+    /// Rasterises the object into its own texture.
+    pub fn new(object: &Object, size: usize) -> Self {
+        let mut surface = vec![EMPTY; size * size];
+        let buckets = triangles_by_band(object, size);
+        surface.par_chunks_mut(BAND_ROWS * size).zip(&buckets).enumerate().for_each(|(band, (rows, triangles))| {
+            for &triangle in triangles {
+                rasterise(object, triangle, size, band * BAND_ROWS, rows);
+            }
+        });
+        for _ in 0..PADDING {
+            pad(object, size, &mut surface);
+        }
+        let chart = surface.par_iter().map(|s| chart_of(object, s)).collect();
+        Self { size, surface, charts: ChartMap::new(size, chart) }
+    }
+
+    /// The surface under a texel, if a chart covers it.
+    pub fn surface_point(&self, object: &Object, texel: usize) -> Option<SurfacePoint> {
+        let s = self.surface[texel];
+        (s.triangle != NO_CHART).then(|| object.surface_point(s.triangle, s.b1, s.b2))
+    }
+}
+
+impl ChartMap {
+    /// Measures how far every texel is from the edge of its chart.
+    pub fn new(size: usize, chart: Vec<u32>) -> Self {
+        let mut reach_u = vec![0; size * size];
+        reach_u.par_chunks_mut(size).zip(chart.par_chunks(size)).for_each(|(reach, row)| reach_along(row, reach));
+        let mut transposed = vec![0; size * size];
+        transposed.par_chunks_mut(size).enumerate().for_each(|(x, reach)| {
+            let column: Vec<u32> = (0..size).map(|y| chart[y * size + x]).collect();
+            reach_along(&column, reach);
+        });
+        let reach_v = (0..size * size).into_par_iter().map(|i| transposed[i % size * size + i / size]).collect();
+        Self { size, chart, reach_u, reach_v }
+    }
+
+    /// The map at half the size. A coarse texel belongs to the chart that most of its four texels belong to, and of
+    /// several the one with the lowest number.
+    pub fn halved(&self) -> Self {
+        let half = self.size / 2;
+        let chart = (0..half * half)
+            .into_par_iter()
+            .map(|i| most_common(self.children(i % half, i / half).map(|child| self.chart[child])))
+            .collect();
+        Self::new(half, chart)
+    }
+
+    /// The four texels under a texel of the halved map.
+    pub fn children(&self, x: usize, y: usize) -> [usize; 4] {
+        let first = 2 * y * self.size + 2 * x;
+        [first, first + 1, first + self.size, first + self.size + 1]
+    }
+
+    /// Bilinear read of `map` at `uv` from texels of one chart only. `None` if none of the four belongs to it.
+    pub fn sample(&self, map: &[Vec4], uv: Vec2, chart: u32) -> Option<Vec4> {
+        let p = uv * self.size as f32 - 0.5;
+        let (x0, y0) = (p.x.floor(), p.y.floor());
+        let (fx, fy) = (p.x - x0, p.y - y0);
+        let last = self.size as i64 - 1;
+        let column = [x0 as i64, x0 as i64 + 1].map(|x| x.clamp(0, last) as usize);
+        let row = [y0 as i64, y0 as i64 + 1].map(|y| y.clamp(0, last) as usize * self.size);
+        let taps = [
+            (row[0] + column[0], (1.0 - fx) * (1.0 - fy)),
+            (row[0] + column[1], fx * (1.0 - fy)),
+            (row[1] + column[0], (1.0 - fx) * fy),
+            (row[1] + column[1], fx * fy),
+        ];
+        let (mut sum, mut weight) = (Vec4::ZERO, 0.0);
+        for (texel, w) in taps {
+            if self.chart[texel] == chart {
+                sum += map[texel] * w;
+                weight += w;
+            }
+        }
+        // Below a thousandth the quotient would only magnify rounding.
+        (weight > 1e-3).then(|| sum / weight)
+    }
+}
+
+fn chart_of(object: &Object, surface: &TexelSurface) -> u32 {
+    if surface.triangle == NO_CHART { NO_CHART } else { object.charts.of_triangle[surface.triangle as usize] }
+}
+
+/// Triangles whose box touches each band of rows, in the mesh's order.
+fn triangles_by_band(object: &Object, size: usize) -> Vec<Vec<u32>> {
+    let mut buckets = vec![Vec::new(); size.div_ceil(BAND_ROWS)];
+    for t in 0..object.mesh.triangles.len() {
+        let rows = object.mesh.corner_uvs(t).map(|uv| uv.y * size as f32);
+        let lo = rows[0].min(rows[1]).min(rows[2]).max(0.0);
+        let hi = rows[0].max(rows[1]).max(rows[2]).min(size as f32 - 1.0);
+        if lo <= hi {
+            let last = buckets.len() - 1;
+            for bucket in &mut buckets[lo as usize / BAND_ROWS..=(hi as usize / BAND_ROWS).min(last)] {
+                bucket.push(t as u32);
+            }
+        }
+    }
+    buckets
+}
+
+/// Claims the free texels whose centres a triangle covers. `rows` are the texels from row `first_row` on.
+fn rasterise(object: &Object, triangle: u32, size: usize, first_row: usize, rows: &mut [TexelSurface]) {
+    let [a, b, c] = object.mesh.corner_uvs(triangle as usize).map(|uv| uv * size as f32 - 0.5);
+    let area = (b - a).perp_dot(c - a);
+    if area == 0.0 || !area.is_finite() {
+        return;
+    }
+    let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
+    let clamp = |x: f32, last: usize| x.clamp(0.0, last as f32) as usize;
+    let last_row = (first_row + rows.len() / size).min(size) - 1;
+    for y in clamp(lo.y.ceil(), size).max(first_row)..=clamp(hi.y.floor(), size - 1).min(last_row) {
+        for x in clamp(lo.x.ceil(), size)..=clamp(hi.x.floor(), size - 1) {
+            let p = Vec2::new(x as f32, y as f32);
+            let b1 = (c - p).perp_dot(a - p) / area;
+            let b2 = (a - p).perp_dot(b - p) / area;
+            let texel = &mut rows[(y - first_row) * size + x];
+            // Both sides of a shared edge may claim its texels (the slack is rounding): the first triangle has them.
+            if b1 >= -1e-6 && b2 >= -1e-6 && b1 + b2 <= 1.0 + 1e-6 && texel.triangle == NO_CHART {
+                *texel = TexelSurface { triangle, b1: b1.clamp(0.0, 1.0), b2: b2.clamp(0.0, 1.0 - b1.clamp(0.0, 1.0)) };
+            }
+        }
+    }
+}
+
+/// Adds one ring of texels around every chart. A new texel takes the triangle of a neighbour and the point of that
+/// triangle nearest to its centre.
+fn pad(object: &Object, size: usize, surface: &mut Vec<TexelSurface>) {
+    let grown = (0..size * size)
+        .into_par_iter()
+        .map(|i| if surface[i].triangle == NO_CHART { nearest_neighbour(object, size, surface, i) } else { surface[i] })
+        .collect();
+    *surface = grown;
+}
+
+fn nearest_neighbour(object: &Object, size: usize, surface: &[TexelSurface], texel: usize) -> TexelSurface {
+    let (x, y) = ((texel % size) as i64, (texel / size) as i64);
+    let centre = (Vec2::new(x as f32, y as f32) + 0.5) / size as f32;
+    let mut best = (f32::INFINITY, EMPTY);
+    for (dx, dy) in [(-1, 0), (1, 0), (0, -1), (0, 1), (-1, -1), (1, -1), (-1, 1), (1, 1)] {
+        let (nx, ny) = (x + dx, y + dy);
+        if nx < 0 || ny < 0 || nx >= size as i64 || ny >= size as i64 {
+            continue;
+        }
+        let neighbour = surface[ny as usize * size + nx as usize];
+        if neighbour.triangle == NO_CHART {
+            continue;
+        }
+        let uvs = object.mesh.corner_uvs(neighbour.triangle as usize);
+        let (b1, b2, distance2) = nearest_on_triangle(uvs, centre);
+        if distance2 < best.0 {
+            best = (distance2, TexelSurface { triangle: neighbour.triangle, b1, b2 });
+        }
+    }
+    best.1
+}
+
+/// Barycentric weights (second, third corner) of the triangle's point nearest to an outside point, and the squared
+/// distance.
+fn nearest_on_triangle(corners: [Vec2; 3], p: Vec2) -> (f32, f32, f32) {
+    let mut best = (0.0, 0.0, f32::INFINITY);
+    for edge in 0..3 {
+        let (from, to) = (corners[edge], corners[(edge + 1) % 3]);
+        let along = to - from;
+        let f = ((p - from).dot(along) / along.length_squared().max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
+        let distance2 = (from + along * f - p).length_squared();
+        if distance2 < best.2 {
+            let mut weights = [0.0; 3];
+            weights[edge] = 1.0 - f;
+            weights[(edge + 1) % 3] = f;
+            best = (weights[1], weights[2], distance2);
+        }
+    }
+    best
+}
+
+/// For each element of a line: how many equal elements follow it without a gap on both sides, the smaller count.
+fn reach_along(line: &[u32], reach: &mut [u16]) {
+    let mut run = 0u16;
+    for i in 0..line.len() {
+        run = if i > 0 && line[i] == line[i - 1] { run.saturating_add(1) } else { 0 };
+        reach[i] = run;
+    }
+    for i in (0..line.len()).rev() {
+        run = if i + 1 < line.len() && line[i] == line[i + 1] { run.saturating_add(1) } else { 0 };
+        reach[i] = reach[i].min(run);
+    }
+}
+
+fn most_common(charts: [u32; 4]) -> u32 {
+    let count = |c: u32| charts.iter().filter(|&&other| other == c).count();
+    let covered = charts.into_iter().filter(|&c| c != NO_CHART);
+    covered.max_by_key(|&c| (count(c), std::cmp::Reverse(c))).unwrap_or(NO_CHART)
+}

@@ -1,0 +1,186 @@
+//! Diffusion of light over the unrolled surface: from irradiance to one map per Gaussian.
+//!
+//! An operator takes the fields at full size and gives back a [`Diffused`]; what is done in between is its own affair.
+//! There is one operator so far, [`Separable`] (d'Eon, Luebke & Enderton 2007, section 5.1).
+
+use crate::passes::atlas::{ChartMap, NO_CHART};
+use crate::passes::blur::{Axis, Fields, Widening, blur};
+use crate::progress::Progress;
+use glam::{Vec2, Vec3, Vec4};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Something that can spread light over a surface.
+pub trait DiffusionOperator: Sync {
+    /// Blurs `fields` by every variance in turn (growing, mm²). Level 0 of the result is `fields` itself.
+    fn diffuse(&self, charts: Arc<ChartMap>, fields: Fields, variances_mm2: &[f32], progress: &dyn Progress) -> Diffused;
+}
+
+/// The light before and after every Gaussian.
+#[derive(Debug, Clone)]
+pub struct Diffused {
+    /// Level 0 is unblurred; level i is blurred by the i-th variance.
+    pub levels: Vec<Level>,
+}
+
+/// One blurred state of all layers.
+#[derive(Debug, Clone)]
+pub struct Level {
+    /// Charts at this level's size.
+    pub charts: Arc<ChartMap>,
+    /// The layers of [`Fields`].
+    pub layers: Arc<Vec<Vec<Vec4>>>,
+}
+
+impl Diffused {
+    /// Bilinear read of a layer at a level, within one chart. A chart too thin for a coarse level is read from the
+    /// nearest finer one that has it; black if none does.
+    pub fn sample(&self, level: usize, layer: usize, uv: Vec2, chart: u32) -> Vec4 {
+        let mut candidates = self.levels[..=level].iter().rev();
+        candidates.find_map(|l| l.charts.sample(&l.layers[layer], uv, chart)).unwrap_or(Vec4::ZERO)
+    }
+
+    /// The kernel's sum of Gaussians at a place: radiant exitance under the surface, W/m².
+    pub fn weighted_sum(&self, weights: &[Vec3], uv: Vec2, chart: u32) -> Vec3 {
+        weights.iter().enumerate().map(|(i, &w)| w * self.sample(i + 1, 0, uv, chart).truncate()).sum()
+    }
+}
+
+/// Seven-tap blurs along u and v, each Gaussian from the one before, wide ones in smaller textures.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Separable;
+
+/// A Gaussian may live in a smaller texture when its standard deviation is still this many texels there. At 3, the
+/// variance that bilinear reads add varies by at most 1/8 texel² about its mean, 1.4 % of 9.
+const COARSE_DEVIATION_TEXELS: f32 = 3.0;
+/// Smallest texture: below this, charts dissolve and nothing is left to save.
+const MIN_SIZE: usize = 64;
+/// A step may at most quadruple the variance (section 5.1 of the paper): ripples of exp(-2 pi²/3) = 0.14 %.
+const MAX_RATIO: f32 = 4.0;
+/// Largest first step from raw texels, texel²: the taps then lie one texel apart.
+const FIRST_STEP_TEXEL2: f32 = 1.1;
+/// Mean variance that bilinear reads add, texel²: f(1-f) over all f.
+const BILINEAR_TEXEL2: f32 = 1.0 / 6.0;
+/// Variance that averaging two neighbours adds, in texel² of the halved texture: (1/2)² of the finer, 1/16 here.
+const HALVING_TEXEL2: f32 = 1.0 / 16.0;
+
+impl DiffusionOperator for Separable {
+    fn diffuse(&self, charts: Arc<ChartMap>, fields: Fields, variances_mm2: &[f32], progress: &dyn Progress) -> Diffused {
+        progress.begin("blur", variances_mm2.len() as u64);
+        let mut state = State::new(charts, fields);
+        let mut levels = vec![state.level()];
+        let mut reached_mm2 = 0.0;
+        for &variance_mm2 in variances_mm2 {
+            while state.can_be_halved_for(variance_mm2) {
+                state.halve();
+            }
+            while reached_mm2 < variance_mm2 {
+                let to_mm2 = state.next_step_mm2(reached_mm2, variance_mm2);
+                state.step(reached_mm2, to_mm2);
+                reached_mm2 = to_mm2;
+            }
+            levels.push(state.level());
+            progress.advance(1);
+        }
+        Diffused { levels }
+    }
+}
+
+/// Fields on their way through the levels.
+struct State {
+    charts: Arc<ChartMap>,
+    fields: Fields,
+    scratch: Fields,
+    /// Texel size that few texels (by area) fall below, and the median, mm.
+    small_mm: f32,
+    median_mm: f32,
+    /// Variance the next step leaves out, texel².
+    saved_texel2: f32,
+    /// Variance left to the final bilinear read so far, texel².
+    left_to_read_texel2: f32,
+}
+
+impl State {
+    fn new(charts: Arc<ChartMap>, fields: Fields) -> Self {
+        let scratch = Fields::zeros(fields.layers.len(), fields.stretch_mm.len());
+        let [small_mm, median_mm] = texel_sizes_mm(&charts, &fields.stretch_mm);
+        Self { charts, fields, scratch, small_mm, median_mm, saved_texel2: 0.0, left_to_read_texel2: 0.0 }
+    }
+
+    fn level(&self) -> Level {
+        Level { charts: Arc::clone(&self.charts), layers: Arc::new(self.fields.layers.clone()) }
+    }
+
+    fn can_be_halved_for(&self, variance_mm2: f32) -> bool {
+        let halves = self.charts.size.is_multiple_of(2) && self.charts.size / 2 >= MIN_SIZE;
+        halves && variance_mm2.sqrt() >= COARSE_DEVIATION_TEXELS * 2.0 * self.median_mm
+    }
+
+    fn halve(&mut self) {
+        let coarse = self.charts.halved();
+        self.fields = halved_fields(&self.charts, &coarse, &self.fields);
+        self.scratch = Fields::zeros(self.fields.layers.len(), self.fields.stretch_mm.len());
+        self.charts = Arc::new(coarse);
+        self.small_mm *= 2.0;
+        self.median_mm *= 2.0;
+        // A quarter of each amount, because a texel² is now four times as large.
+        self.saved_texel2 = 0.25 * self.saved_texel2 + HALVING_TEXEL2 + BILINEAR_TEXEL2 - 0.25 * self.left_to_read_texel2;
+        self.left_to_read_texel2 = BILINEAR_TEXEL2;
+    }
+
+    /// Variance to go to next on the way from `reached` to `wanted`, so that the taps never skip texels that matter.
+    fn next_step_mm2(&self, reached_mm2: f32, wanted_mm2: f32) -> f32 {
+        let first_mm2 = FIRST_STEP_TEXEL2 * self.small_mm * self.small_mm;
+        // 1 % of slack, so that a kernel made for this rule does not cost a step more.
+        let most_mm2 = (MAX_RATIO * reached_mm2).max(reached_mm2 + first_mm2);
+        if wanted_mm2 <= 1.01 * most_mm2 { wanted_mm2 } else { most_mm2 }
+    }
+
+    fn step(&mut self, from_mm2: f32, to_mm2: f32) {
+        let widening = Widening { from_mm2, to_mm2, saved_texel2: self.saved_texel2 };
+        blur(&self.charts, Axis::U, widening, &self.fields, &mut self.scratch);
+        blur(&self.charts, Axis::V, widening, &self.scratch, &mut self.fields);
+        self.saved_texel2 = 0.0;
+    }
+}
+
+/// The texel size (the smaller of both directions) below which 5 % and 50 % of the surface lie, mm.
+fn texel_sizes_mm(charts: &ChartMap, stretch_mm: &[Vec2]) -> [f32; 2] {
+    // Every seventh texel is plenty for two percentiles, and 7 divides no texture size.
+    let covered = charts.chart.iter().zip(stretch_mm).step_by(7).filter(|(c, _)| **c != NO_CHART);
+    let mut sizes: Vec<(f32, f64)> = covered.map(|(_, s)| (s.min_element(), f64::from(s.x * s.y))).collect();
+    sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let total: f64 = sizes.iter().map(|s| s.1).sum();
+    [0.05, 0.5].map(|fraction| {
+        let mut sum = 0.0;
+        let found = sizes.iter().find(|(_, area)| {
+            sum += area;
+            sum >= fraction * total
+        });
+        found.map_or(1.0, |s| s.0)
+    })
+}
+
+/// The mean over the texels of the same chart; the stretch counts for coarse texels.
+fn halved_fields(fine: &ChartMap, coarse: &ChartMap, fields: &Fields) -> Fields {
+    let layers = fields.layers.iter().map(|layer| halved(fine, coarse, layer, Vec4::ZERO)).collect();
+    let mut stretch_mm = halved(fine, coarse, &fields.stretch_mm, Vec2::ZERO);
+    stretch_mm.par_iter_mut().for_each(|s| *s *= 2.0);
+    Fields { layers, stretch_mm }
+}
+
+fn halved<T>(fine: &ChartMap, coarse: &ChartMap, map: &[T], zero: T) -> Vec<T>
+where
+    T: Copy + Send + Sync + std::ops::Add<Output = T> + std::ops::Mul<f32, Output = T>,
+{
+    let mean = |i: usize| {
+        let chart = coarse.chart[i];
+        if chart == NO_CHART {
+            return zero;
+        }
+        let own = fine.children(i % coarse.size, i / coarse.size).into_iter().filter(|&c| fine.chart[c] == chart);
+        let (sum, count) = own.fold((zero, 0.0f32), |(sum, count), c| (sum + map[c], count + 1.0));
+        sum * count.recip()
+    };
+    (0..coarse.size * coarse.size).into_par_iter().map(mean).collect()
+}

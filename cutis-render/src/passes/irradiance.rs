@@ -1,0 +1,155 @@
+//! Irradiance under the surface, in texture space, with the distance through the body beside it
+//! (d'Eon, Luebke & Enderton 2007, section 5.4, "Render irradiance texture").
+//!
+//! rgb = (Σ lights E cos visible rho_dt(cos, m) + environment) · albedo^mix, in W/m².
+//! The distance to the light-facing surface rides in alpha for the first light; for more lights, in further layers.
+
+use crate::passes::ambient::Ambient;
+use crate::passes::atlas::Atlas;
+use crate::passes::visibility::{light_facing_surface, visible_fraction};
+use crate::prepare::{FilteredEnvironment, RhoDt};
+use crate::progress::Progress;
+use crate::sampling::random2;
+use crate::settings::Settings;
+use cutis_scene::{Bvh, Object, Scene, SurfacePoint};
+use glam::{Vec3, Vec4};
+use rayon::prelude::*;
+
+/// Stream of random numbers this pass draws from; one per light from here on.
+const STREAM: u32 = 0x100;
+
+/// Everything the pass reads.
+pub struct IrradianceInputs<'a> {
+    /// The whole scene.
+    pub scene: &'a Scene,
+    /// Rays against it.
+    pub bvh: &'a Bvh,
+    /// How to draw.
+    pub settings: &'a Settings,
+    /// The object whose texture is filled.
+    pub object: &'a Object,
+    /// Its unrolled surface.
+    pub atlas: &'a Atlas,
+    /// Its openness.
+    pub ambient: &'a Ambient,
+    /// The environment, if there is one.
+    pub environment: Option<&'a FilteredEnvironment>,
+    /// What its surface lets through.
+    pub rho_dt: &'a RhoDt,
+    /// Distance beyond which nothing comes through, mm.
+    pub opaque_mm: f32,
+}
+
+/// The filled texture.
+pub struct Irradiance {
+    /// Layer 0: irradiance, and distance for light 0; then distances of the other lights, four to a layer.
+    pub layers: Vec<Vec<Vec4>>,
+    /// Of the irradiance that comes from lights, the share of each: four lights to a layer. Empty for a single light,
+    /// whose share is 1.
+    pub shares: Vec<Vec<Vec4>>,
+}
+
+/// Layer and component that hold a light's distance.
+pub fn distance_slot(light: usize) -> (usize, usize) {
+    if light == 0 { (0, 3) } else { (1 + (light - 1) / 4, (light - 1) % 4) }
+}
+
+/// Fills the texture.
+pub fn irradiance(inputs: &IrradianceInputs, progress: &dyn Progress) -> Irradiance {
+    let size = inputs.atlas.size;
+    let lights = inputs.scene.lights.len();
+    let layer_count = 1 + lights.saturating_sub(1).div_ceil(4);
+    let share_count = if lights > 1 { lights.div_ceil(4) } else { 0 };
+    progress.begin("irradiance", size as u64);
+    let rows: Vec<Vec<Vec<Vec4>>> = (0..size)
+        .into_par_iter()
+        .map(|y| {
+            let mut row = vec![vec![Vec4::ZERO; size]; layer_count + share_count];
+            for x in 0..size {
+                light_texel(inputs, x, y, layer_count, &mut row);
+            }
+            progress.advance(1);
+            row
+        })
+        .collect();
+    let layer = |l: usize| rows.iter().flat_map(|row| row[l].iter().copied()).collect();
+    Irradiance {
+        layers: (0..layer_count).map(layer).collect(),
+        shares: (layer_count..layer_count + share_count).map(layer).collect(),
+    }
+}
+
+fn light_texel(inputs: &IrradianceInputs, x: usize, y: usize, layer_count: usize, row: &mut [Vec<Vec4>]) {
+    let texel = y * inputs.atlas.size + x;
+    let Some(point) = inputs.atlas.surface_point(inputs.object, texel) else { return };
+    let material = &inputs.object.material;
+    let normal = shading_normal(inputs.object, &point);
+    let (rho_s, roughness) = (material.rho_s.at(point.uv), material.roughness.at(point.uv));
+    let mut from_lights = Vec3::ZERO;
+    let shares = row.len() > layer_count;
+    for (l, light) in inputs.scene.lights.iter().enumerate() {
+        let received = from_light(inputs, l, &point, normal, [x, y]);
+        let cos = normal.dot(light.sample(point.position_mm).dir_to_light);
+        let entered = received * inputs.rho_dt.at(cos, roughness, rho_s);
+        from_lights += entered;
+        let (layer, component) = distance_slot(l);
+        row[layer][x][component] = distance_mm(inputs, l, &point);
+        if shares {
+            row[layer_count + l / 4][x][l % 4] = entered.element_sum();
+        }
+    }
+    for l in 0..if shares { inputs.scene.lights.len() } else { 0 } {
+        row[layer_count + l / 4][x][l % 4] /= from_lights.element_sum().max(f32::MIN_POSITIVE);
+    }
+    let from_environment = from_environment(inputs, &point, normal, inputs.atlas.charts.chart[texel]) * inputs.rho_dt.mean(roughness, rho_s);
+    let film = material.albedo.at(point.uv).max(Vec3::ZERO).powf(material.albedo_mix);
+    row[0][x] = ((from_lights + from_environment) * film).extend(row[0][x].w);
+}
+
+/// Irradiance from one light, shadows included, W/m².
+fn from_light(inputs: &IrradianceInputs, l: usize, point: &SurfacePoint, normal: Vec3, [x, y]: [usize; 2]) -> Vec3 {
+    let light = &inputs.scene.lights[l];
+    let towards = light.sample(point.position_mm);
+    let cos = normal.dot(towards.dir_to_light);
+    // Relief may turn a normal towards a light that the smooth surface does not face.
+    if cos <= 0.0 || point.normal.dot(towards.dir_to_light) <= 0.0 || towards.irradiance_w_per_m2 == Vec3::ZERO {
+        return Vec3::ZERO;
+    }
+    let shift = random2(x as u32, y as u32, STREAM + l as u32, inputs.settings.seed);
+    let visible = visible_fraction(inputs.bvh, point, light, inputs.settings.shadow_samples, shift);
+    towards.irradiance_w_per_m2 * (cos * visible)
+}
+
+fn from_environment(inputs: &IrradianceInputs, point: &SurfacePoint, normal: Vec3, chart: u32) -> Vec3 {
+    let Some(environment) = inputs.environment else { return Vec3::ZERO };
+    let (bent, open) = inputs.ambient.at(point.uv, chart, point.normal);
+    // The relief turns the bent normal as it turns the smooth one.
+    environment.irradiance((normal + bent - point.normal).normalize_or(normal)) * open
+}
+
+/// Distance d through the body towards a light, corrected by the angle as the paper does: m where the normals at both
+/// ends agree, m cos theta where they are opposite; 0 on the lit side.
+fn distance_mm(inputs: &IrradianceInputs, l: usize, point: &SurfacePoint) -> f32 {
+    let light = &inputs.scene.lights[l];
+    let dir_to_light = light.sample(point.position_mm).dir_to_light;
+    if point.normal.dot(dir_to_light) >= 0.0 {
+        return 0.0;
+    }
+    match light_facing_surface(inputs.scene, inputs.bvh, point, light) {
+        Some(there) => {
+            let cos = point.normal.dot(dir_to_light).abs();
+            let opposite = (-there.normal.dot(point.normal)).max(0.0);
+            let corrected = there.distance_mm * (1.0 + (cos - 1.0) * opposite);
+            corrected.min(inputs.opaque_mm)
+        }
+        None => inputs.opaque_mm,
+    }
+}
+
+/// The normal with the material's relief.
+pub fn shading_normal(object: &Object, point: &SurfacePoint) -> Vec3 {
+    match &object.material.normal {
+        Some(map) => map.at(point.uv, point.normal, point.tangent),
+        None => point.normal,
+    }
+}

@@ -1,0 +1,14 @@
+//! The passes of the frame, by the names the papers give them. Each is a plain function from inputs to a map.
+
+pub mod ambient;
+pub mod atlas;
+pub mod blur;
+pub mod diffusion;
+pub mod irradiance;
+pub mod resolve;
+pub mod seams;
+pub mod specular;
+pub mod stretch;
+pub mod tap;
+pub mod transmission;
+pub mod visibility;

@@ -1,0 +1,225 @@
+//! The final pass: from blurred irradiance to radiance at every pixel
+//! (d'Eon, Luebke & Enderton 2007, section 5.4, "Render final image").
+
+use crate::passes::ambient::Ambient;
+use crate::passes::atlas::Atlas;
+use crate::passes::diffusion::Diffused;
+use crate::passes::irradiance::{distance_slot, shading_normal};
+use crate::passes::specular::Shine;
+use crate::passes::transmission::{ShadowedPlace, transmitted};
+use crate::passes::visibility::{LightFacing, light_facing_surface, visible_fraction};
+use crate::prepare::{FilteredEnvironment, Kernel, RhoDt};
+use crate::settings::Aov;
+use cutis_scene::{Bvh, Hit, Object, Scene, SurfacePoint};
+use glam::{Vec2, Vec3, Vec4};
+use std::f32::consts::PI;
+
+/// One object's textures and tables.
+pub struct ObjectMaps {
+    /// Its unrolled surface.
+    pub atlas: Atlas,
+    /// Millimetres per texel along u and v.
+    pub stretch_mm: Vec<Vec2>,
+    /// Its openness.
+    pub ambient: Ambient,
+    /// Light under its surface.
+    pub diffused: Diffused,
+    /// Share of each light in the irradiance; empty for a single light.
+    pub shares: Vec<Vec<Vec4>>,
+    /// Its diffusion kernel.
+    pub kernel: Kernel,
+    /// What its surface lets through.
+    pub rho_dt: RhoDt,
+}
+
+/// What the final pass reads.
+pub struct Resolve<'a> {
+    /// The whole scene.
+    pub scene: &'a Scene,
+    /// Rays against it.
+    pub bvh: &'a Bvh,
+    /// The environment, if there is one.
+    pub environment: Option<&'a FilteredEnvironment>,
+    /// Textures and tables of each object.
+    pub maps: &'a [ObjectMaps],
+    /// Layers wanted beside the radiance.
+    pub aovs: &'a [Aov],
+}
+
+/// Radiance and layers of one sample of a pixel.
+#[derive(Debug, Clone)]
+pub struct Sample {
+    /// Radiance in rgb, coverage in alpha.
+    pub radiance: Vec4,
+    /// One value per wanted layer.
+    pub layers: Vec<Vec4>,
+}
+
+/// The parts that make up the radiance at a point.
+struct Parts {
+    diffuse: Vec3,
+    transmission: Vec3,
+    specular: Vec3,
+}
+
+/// A point on the surface, and where it lies in the textures.
+struct Place<'a> {
+    object: &'a Object,
+    maps: &'a ObjectMaps,
+    point: SurfacePoint,
+    normal: Vec3,
+    chart: u32,
+}
+
+impl Resolve<'_> {
+    /// What the eye sees along a ray. `turn` shifts the sample on each light's disc.
+    pub fn sample(&self, eye_mm: Vec3, dir: Vec3, turn: Vec2) -> Sample {
+        match self.bvh.closest(eye_mm, dir, f32::INFINITY) {
+            Some(hit) => self.shade(&hit, dir, turn),
+            None => Sample { radiance: self.background(dir), layers: vec![Vec4::ZERO; self.aovs.len()] },
+        }
+    }
+
+    fn background(&self, dir: Vec3) -> Vec4 {
+        match &self.scene.environment {
+            Some(environment) if environment.visible => environment.radiance(dir).extend(1.0),
+            _ => Vec4::ZERO,
+        }
+    }
+
+    fn shade(&self, hit: &Hit, dir: Vec3, turn: Vec2) -> Sample {
+        let place = self.place(hit, dir);
+        let parts = self.parts(&place, -dir, turn);
+        let radiance = (parts.diffuse + parts.transmission + parts.specular).extend(1.0);
+        let layers = self.aovs.iter().map(|&aov| self.layer(aov, &place, &parts)).collect();
+        Sample { radiance, layers }
+    }
+
+    fn place(&self, hit: &Hit, dir: Vec3) -> Place<'_> {
+        let object = &self.scene.objects[hit.object as usize];
+        let point = object.surface_point(hit.triangle, hit.b1, hit.b2);
+        let normal = towards_eye(shading_normal(object, &point), -dir);
+        let chart = object.charts.of_triangle[hit.triangle as usize];
+        Place { object, maps: &self.maps[hit.object as usize], point, normal, chart }
+    }
+
+    /// The sums of the paper's final pass.
+    fn parts(&self, place: &Place, dir_to_eye: Vec3, turn: Vec2) -> Parts {
+        let uv = place.point.uv;
+        let material = &place.object.material;
+        let shine = Shine {
+            normal: place.normal,
+            dir_to_eye,
+            rho_s: material.rho_s.at(uv),
+            roughness: material.roughness.at(uv),
+            f0: material.f0,
+        };
+        let local = place.maps.diffused.weighted_sum(&place.maps.kernel.weights, uv, place.chart);
+        // On the way out: the film once more, rho_dt towards the eye, and the even spread of exitance over directions.
+        let film = material.albedo.at(uv).max(Vec3::ZERO).powf(1.0 - material.albedo_mix);
+        let cos_eye = place.normal.dot(dir_to_eye);
+        let leaving = film * (place.maps.rho_dt.at(cos_eye, shine.roughness, shine.rho_s) / PI);
+        Parts {
+            diffuse: local * leaving,
+            transmission: self.through_the_body(place) * leaving,
+            specular: self.specular(place, &shine, turn),
+        }
+    }
+
+    fn specular(&self, place: &Place, shine: &Shine, turn: Vec2) -> Vec3 {
+        let mut sum = Vec3::ZERO;
+        for light in &self.scene.lights {
+            let towards = light.sample(place.point.position_mm);
+            if place.point.normal.dot(towards.dir_to_light) > 0.0 {
+                let reflected = shine.from_light(&towards);
+                if reflected != Vec3::ZERO {
+                    sum += reflected * visible_fraction(self.bvh, &place.point, light, 1, turn);
+                }
+            }
+        }
+        if let Some(environment) = self.environment {
+            let (_, open) = place.maps.ambient.at(place.point.uv, place.chart, place.point.normal);
+            sum += shine.from_environment(environment, &place.maps.rho_dt, open);
+        }
+        sum
+    }
+
+    fn through_the_body(&self, place: &Place) -> Vec3 {
+        let mut sum = Vec3::ZERO;
+        for (l, light) in self.scene.lights.iter().enumerate() {
+            if let Some(there) = light_facing_surface(self.scene, self.bvh, &place.point, light) {
+                let share = self.share(l, &there);
+                if share > 0.0 {
+                    let here = self.shadowed_place(place, &there);
+                    let maps = &self.maps[there.object];
+                    let kernel = &place.maps.kernel;
+                    sum += transmitted(kernel, l, (&place.maps.diffused, &here), (&maps.diffused, &there)) * share;
+                }
+            }
+        }
+        sum
+    }
+
+    /// Share of a light in what falls on its light-facing side, so that light counted once is not counted again.
+    fn share(&self, l: usize, there: &LightFacing) -> f32 {
+        let maps = &self.maps[there.object];
+        match maps.shares.get(l / 4) {
+            Some(shares) => maps.atlas.charts.sample(shares, there.uv, there.chart).map_or(0.0, |s| s[l % 4]),
+            None => 1.0,
+        }
+    }
+
+    fn shadowed_place(&self, place: &Place, there: &LightFacing) -> ShadowedPlace {
+        let same = std::ptr::eq(place.maps, &self.maps[there.object]) && place.chart == there.chart;
+        let apart_mm = if same { along_surface_mm(place.maps, place.point.uv, there.uv) } else { f32::INFINITY };
+        ShadowedPlace { uv: place.point.uv, chart: place.chart, apart_mm }
+    }
+
+    fn layer(&self, aov: Aov, place: &Place, parts: &Parts) -> Vec4 {
+        let (maps, uv) = (place.maps, place.point.uv);
+        let read = |level: usize| {
+            let level = level.min(maps.diffused.levels.len() - 1);
+            maps.diffused.sample(level, 0, uv, place.chart).truncate().extend(1.0)
+        };
+        match aov {
+            Aov::Irradiance => read(0),
+            Aov::Blur(i) => read(usize::from(i) + 1),
+            Aov::Stretch => stretch_at(maps, uv).extend(0.0).extend(1.0),
+            Aov::Thickness => self.distances(place),
+            Aov::Normal => place.normal.extend(1.0),
+            Aov::Albedo => place.object.material.albedo.at(uv).extend(1.0),
+            Aov::Specular => parts.specular.extend(1.0),
+            Aov::Transmission => parts.transmission.extend(1.0),
+            Aov::Charts => Vec4::splat(place.chart as f32),
+        }
+    }
+
+    /// Distances towards the first four lights, mm.
+    fn distances(&self, place: &Place) -> Vec4 {
+        let mut distances = Vec4::ZERO;
+        for l in 0..self.scene.lights.len().min(4) {
+            let (layer, component) = distance_slot(l);
+            distances[l] = place.maps.diffused.sample(0, layer, place.point.uv, place.chart)[component];
+        }
+        distances
+    }
+}
+
+/// Relief may tip a normal away from the eye at the silhouette; tip it back until it is seen edge-on.
+fn towards_eye(normal: Vec3, dir_to_eye: Vec3) -> Vec3 {
+    let cos = normal.dot(dir_to_eye);
+    // A hair above 0 keeps the half vector and rho_dt defined.
+    if cos >= 1e-3 { normal } else { (normal + dir_to_eye * (1e-3 - cos)).normalize_or(dir_to_eye) }
+}
+
+/// Texture distance of two places of one chart in millimetres, by the mean of the stretch at both.
+fn along_surface_mm(maps: &ObjectMaps, a: Vec2, b: Vec2) -> f32 {
+    let texels = (a - b) * maps.atlas.size as f32;
+    (texels * 0.5 * (stretch_at(maps, a) + stretch_at(maps, b))).length()
+}
+
+fn stretch_at(maps: &ObjectMaps, uv: Vec2) -> Vec2 {
+    let size = maps.atlas.size;
+    let texel = (uv * size as f32).clamp(Vec2::ZERO, Vec2::splat(size as f32 - 1.0));
+    maps.stretch_mm[texel.y as usize * size + texel.x as usize]
+}

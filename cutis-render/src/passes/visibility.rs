@@ -1,0 +1,57 @@
+//! What a light sees: shadows, and the light-facing surface behind a shadowed one.
+//!
+//! The papers read both from maps drawn from the light; on the CPU they are rays. The translucent shadow map's
+//! content (d'Eon, Luebke & Enderton 2007, section 5.2) is the same: depth and texture coordinates of the surface that
+//! faces the light. Where the papers can only know the surface nearest to the light, a ray finds the nearest one in
+//! front of the shadowed point, whose own shadowing is in its irradiance.
+
+use crate::sampling::{disc, r2_point};
+use cutis_scene::{Bvh, Light, Scene, SurfacePoint};
+use glam::{Vec2, Vec3};
+
+/// A place on the surface where light enters that leaves at the shadowed point.
+#[derive(Debug, Clone, Copy)]
+pub struct LightFacing {
+    /// Object of the place.
+    pub object: usize,
+    /// Its chart.
+    pub chart: u32,
+    /// Its texture coordinates.
+    pub uv: Vec2,
+    /// Its unit normal.
+    pub normal: Vec3,
+    /// Distance m through the body, towards the light, mm.
+    pub distance_mm: f32,
+}
+
+/// Fraction of the light's disc that the point sees, by `samples` rays turned by `shift`.
+pub fn visible_fraction(bvh: &Bvh, point: &SurfacePoint, light: &Light, samples: u32, shift: Vec2) -> f32 {
+    let samples = if light.has_extent() { samples } else { 1 };
+    let origin = bvh.step_off(point.lifted_position_mm, point.flat_normal);
+    let seen = (0..samples).filter(|&i| {
+        let place = if light.has_extent() { disc(r2_point(i, shift)) } else { Vec2::ZERO };
+        let towards = light.sample_disc(origin, place);
+        !bvh.occluded(origin, towards.dir_to_light, towards.distance_mm)
+    });
+    seen.count() as f32 / samples as f32
+}
+
+/// The light-facing surface behind a point that faces away from the light: where a ray towards the light leaves the
+/// body. `None` if the point faces the light, or the ray never leaves (open meshes).
+pub fn light_facing_surface(scene: &Scene, bvh: &Bvh, point: &SurfacePoint, light: &Light) -> Option<LightFacing> {
+    let towards = light.sample(point.position_mm);
+    if point.normal.dot(towards.dir_to_light) >= 0.0 {
+        return None;
+    }
+    let origin = bvh.step_off(point.position_mm, -point.flat_normal);
+    let hit = bvh.closest(origin, towards.dir_to_light, towards.distance_mm)?;
+    let object = &scene.objects[hit.object as usize];
+    let there = object.surface_point(hit.triangle, hit.b1, hit.b2);
+    Some(LightFacing {
+        object: hit.object as usize,
+        chart: object.charts.of_triangle[hit.triangle as usize],
+        uv: there.uv,
+        normal: there.normal,
+        distance_mm: hit.distance_mm,
+    })
+}

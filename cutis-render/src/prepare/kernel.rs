@@ -1,0 +1,67 @@
+//! From a material's numbers to the one kernel all passes use: variances and a weight per channel.
+
+use crate::RenderError;
+use cutis_optics::RgbGaussianSum;
+use glam::Vec3;
+
+/// The diffusion kernel as the passes want it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Kernel {
+    /// Variances along one axis, growing, mm².
+    pub variances_mm2: Vec<f32>,
+    /// Weight per channel of each Gaussian.
+    pub weights: Vec<Vec3>,
+}
+
+impl Kernel {
+    /// The kernel of a sum of Gaussians: terms sorted by variance.
+    pub fn new(sum: &RgbGaussianSum) -> Self {
+        let mut terms: Vec<_> = sum.variances_mm2.iter().copied().zip(sum.weights.iter().copied()).collect();
+        terms.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Self {
+            variances_mm2: terms.iter().map(|&(variance_mm2, _)| variance_mm2 as f32).collect(),
+            weights: terms.iter().map(|&(_, weight)| Vec3::from_array(weight.map(|w| w as f32))).collect(),
+        }
+    }
+
+    /// A kernel that leaves light where it falls: the opaque surface of the same colour.
+    pub fn opaque(total: Vec3) -> Self {
+        Self { variances_mm2: vec![0.0], weights: vec![total] }
+    }
+
+    /// Sum of the weights per channel: the diffuse reflectance.
+    pub fn total(&self) -> Vec3 {
+        self.weights.iter().copied().sum()
+    }
+
+    /// Scaled so that every channel's weights sum to 1 and the albedo alone gives the colour
+    /// (d'Eon, Luebke & Enderton 2007, section 5.3).
+    pub fn normalised_to_white(&self) -> Self {
+        let total = self.total().max(Vec3::splat(f32::MIN_POSITIVE));
+        let weights = self.weights.iter().map(|&w| w / total).collect();
+        Self { variances_mm2: self.variances_mm2.clone(), weights }
+    }
+
+    /// Standard deviation of the widest Gaussian, mm.
+    pub fn reach_mm(&self) -> f32 {
+        self.variances_mm2.last().map_or(0.0, |v| v.sqrt())
+    }
+
+    /// Refuses kernels that no pass could use.
+    ///
+    /// # Errors
+    /// If a variance or weight is not finite, a variance negative, or there is no term at all.
+    pub fn checked(self, material: &str) -> Result<Self, RenderError> {
+        let bad = |reason: String| RenderError::BadMaterial { material: material.to_owned(), reason };
+        if self.weights.is_empty() || self.weights.len() != self.variances_mm2.len() {
+            return Err(bad("its kernel has no Gaussian, or not one weight for each".to_owned()));
+        }
+        if let Some(v) = self.variances_mm2.iter().find(|v| !v.is_finite() || **v < 0.0) {
+            return Err(bad(format!("a variance of its kernel is {v} mm²; it must be finite and not negative")));
+        }
+        if let Some(w) = self.weights.iter().find(|w| !w.is_finite()) {
+            return Err(bad(format!("a weight of its kernel is {w}; it must be finite")));
+        }
+        Ok(self)
+    }
+}

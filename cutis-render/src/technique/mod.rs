@@ -1,0 +1,3 @@
+//! The published methods, one file each.
+
+pub mod texture_space;

@@ -1,0 +1,260 @@
+//! Texture-space diffusion with translucent shadows: the algorithm of d'Eon, Luebke & Enderton 2007, section 5.4.
+
+use crate::frame::{Frame, Layer, PassTime};
+use crate::passes::ambient::Ambient;
+use crate::passes::atlas::Atlas;
+use crate::passes::blur::Fields;
+use crate::passes::diffusion::{DiffusionOperator, Separable};
+use crate::passes::irradiance::{IrradianceInputs, irradiance};
+use crate::passes::resolve::{ObjectMaps, Resolve, Sample};
+use crate::passes::seams::{DiffusionReport, diffusion_report};
+use crate::passes::stretch::stretch_mm_per_texel;
+use crate::prepare::kernel::kernel_of;
+use crate::prepare::{FilteredEnvironment, Kernel, RhoDt};
+use crate::sampling::random2;
+use crate::settings::{Aov, AovSpace, Diffusion, Settings};
+use crate::{Progress, RenderError};
+use cutis_scene::{Bvh, Object, Scene};
+use glam::{Vec2, Vec4};
+use rayon::prelude::*;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Stream of random numbers the camera draws from.
+const STREAM: u32 = 0xCA;
+/// Standard deviations of the widest Gaussian beyond which a body is opaque: exp(-5²/2) = 4e-6 comes through.
+const OPAQUE_DEVIATIONS: f32 = 5.0;
+/// Smallest irradiance texture of an object that is much smaller than the largest.
+const MIN_ATLAS: u32 = 64;
+
+/// A scene whose light has been gathered and spread, ready to be looked at from anywhere.
+pub struct LitScene<'a> {
+    scene: &'a Scene,
+    bvh: Bvh,
+    environment: Option<FilteredEnvironment>,
+    maps: Vec<ObjectMaps>,
+    clock: Clock,
+}
+
+/// Draws a scene.
+///
+/// # Errors
+/// If a material cannot be turned into a kernel.
+pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Result<Frame, RenderError> {
+    let mut lit = LitScene::new(scene, settings, progress)?;
+    let mut frame = lit.resolve(settings, progress);
+    if settings.aov_space == AovSpace::Texture {
+        frame.layers = settings.aovs.iter().filter_map(|&aov| lit.texture_layer(aov)).collect();
+    }
+    frame.passes = lit.clock.passes;
+    frame.warnings = warnings(scene);
+    Ok(frame)
+}
+
+impl<'a> LitScene<'a> {
+    /// Runs every pass but the last.
+    ///
+    /// # Errors
+    /// If a material cannot be turned into a kernel.
+    pub fn new(scene: &'a Scene, settings: &Settings, progress: &dyn Progress) -> Result<Self, RenderError> {
+        let mut clock = Clock::default();
+        let bvh = clock.time("acceleration structure", || Bvh::build(&scene.objects));
+        let environment = clock.time("environment", || scene.environment.as_ref().map(FilteredEnvironment::new));
+        let sizes = atlas_sizes(&scene.objects, settings.irradiance_size);
+        let mut maps = Vec::with_capacity(scene.objects.len());
+        for (object, size) in scene.objects.iter().zip(sizes) {
+            let pass = ObjectPass { scene, settings, bvh: &bvh, environment: environment.as_ref(), object };
+            maps.push(pass.run(size as usize, &mut clock, progress)?);
+        }
+        Ok(Self { scene, bvh, environment, maps, clock })
+    }
+
+    /// The final pass: a picture through the scene's camera.
+    pub fn resolve(&mut self, settings: &Settings, progress: &dyn Progress) -> Frame {
+        let aovs: &[Aov] = if settings.aov_space == AovSpace::Picture { &settings.aovs } else { &[] };
+        let environment = self.environment.as_ref();
+        let resolve = Resolve { scene: self.scene, bvh: &self.bvh, environment, maps: &self.maps, aovs };
+        self.clock.time("resolve", || picture(&resolve, settings, progress))
+    }
+
+    /// Energy and seam error of every object, by name.
+    pub fn reports(&self) -> Vec<(String, DiffusionReport)> {
+        let pairs = self.scene.objects.iter().zip(&self.maps);
+        pairs.map(|(object, maps)| (object.name.clone(), diffusion_report(object, maps))).collect()
+    }
+
+    /// Textures and tables of each object.
+    pub fn maps(&self) -> &[ObjectMaps] {
+        &self.maps
+    }
+
+    /// A pass's own texture, of the first object. `None` for layers that exist only in the picture.
+    fn texture_layer(&self, aov: Aov) -> Option<Layer> {
+        let maps = self.maps.first()?;
+        let level = |i: usize| maps.diffused.levels.get(i).map(|l| (l.charts.size, l.layers[0].clone()));
+        let (size, pixels) = match aov {
+            Aov::Irradiance => level(0)?,
+            Aov::Blur(i) => level(usize::from(i) + 1)?,
+            Aov::Thickness => {
+                let (size, pixels) = level(0)?;
+                (size, pixels.iter().map(|p| Vec4::splat(p.w)).collect())
+            }
+            Aov::Stretch => (maps.atlas.size, maps.stretch_mm.iter().map(|s| s.extend(0.0).extend(0.0)).collect()),
+            Aov::Charts => {
+                let number = |&c: &u32| Vec4::splat(if c == u32::MAX { -1.0 } else { c as f32 });
+                (maps.atlas.size, maps.atlas.charts.chart.iter().map(number).collect())
+            }
+            Aov::Normal | Aov::Albedo | Aov::Specular | Aov::Transmission => return None,
+        };
+        Some(Layer { name: aov.to_string(), width: size as u32, height: size as u32, channels: channels(aov), pixels })
+    }
+}
+
+/// The passes that fill one object's textures.
+struct ObjectPass<'a> {
+    scene: &'a Scene,
+    settings: &'a Settings,
+    bvh: &'a Bvh,
+    environment: Option<&'a FilteredEnvironment>,
+    object: &'a Object,
+}
+
+impl ObjectPass<'_> {
+    fn run(&self, size: usize, clock: &mut Clock, progress: &dyn Progress) -> Result<ObjectMaps, RenderError> {
+        let (object, settings) = (self.object, self.settings);
+        let kernel = clock.time("kernel", || self.kernel())?;
+        let rho_dt = clock.time("rho_dt", || RhoDt::new(object.material.f0));
+        let atlas = clock.time("atlas", || Atlas::new(object, size));
+        let stretch_mm = clock.time("stretch", || stretch_mm_per_texel(object, &atlas));
+        let rays = if self.environment.is_some() { settings.ambient_samples } else { 0 };
+        let ambient = clock.time("ambient occlusion", || {
+            Ambient::new(object, &atlas, self.bvh, rays, settings.seed, progress)
+        });
+        let inputs = IrradianceInputs {
+            scene: self.scene,
+            bvh: self.bvh,
+            settings,
+            object,
+            atlas: &atlas,
+            ambient: &ambient,
+            environment: self.environment,
+            rho_dt: &rho_dt,
+            opaque_mm: OPAQUE_DEVIATIONS * kernel.reach_mm(),
+        };
+        let lit = clock.time("irradiance", || irradiance(&inputs, progress));
+        let charts = Arc::new(atlas.charts.clone());
+        let fields = Fields { layers: lit.layers, stretch_mm: stretch_mm.clone() };
+        let diffused = clock.time("blur", || Separable.diffuse(charts, fields, &kernel.variances_mm2, progress));
+        Ok(ObjectMaps { atlas, stretch_mm, ambient, diffused, shares: lit.shares, kernel, rho_dt })
+    }
+
+    fn kernel(&self) -> Result<Kernel, RenderError> {
+        let kernel = kernel_of(&self.object.material, self.settings.gaussians)?;
+        Ok(match self.settings.diffusion {
+            Diffusion::Separable => kernel,
+            Diffusion::None => Kernel::opaque(kernel.total()),
+        })
+    }
+}
+
+/// Size of each object's texture: the largest object gets all of it, others by the square root of their area, in
+/// powers of two below.
+fn atlas_sizes(objects: &[Object], largest: u32) -> Vec<u32> {
+    let area = |object: &Object| (0..object.mesh.triangles.len()).map(|t| f64::from(object.mesh.area_mm2(t))).sum::<f64>();
+    let areas: Vec<f64> = objects.iter().map(area).collect();
+    let most = areas.iter().copied().fold(0.0, f64::max);
+    let size = |area: &f64| {
+        let mut size = largest;
+        while size.is_multiple_of(2) && size / 2 >= MIN_ATLAS && f64::from(size / 2) >= f64::from(largest) * (area / most).sqrt() {
+            size /= 2;
+        }
+        size
+    };
+    areas.iter().map(size).collect()
+}
+
+fn picture(resolve: &Resolve, settings: &Settings, progress: &dyn Progress) -> Frame {
+    let (width, height) = (settings.width as usize, settings.height as usize);
+    progress.begin("resolve", u64::from(settings.height));
+    let rows: Vec<Vec<Sample>> = (0..height)
+        .into_par_iter()
+        .map(|y| {
+            let row = (0..width).map(|x| pixel(resolve, settings, x as u32, y as u32)).collect();
+            progress.advance(1);
+            row
+        })
+        .collect();
+    let layer = |(l, &aov): (usize, &Aov)| Layer {
+        name: aov.to_string(),
+        width: settings.width,
+        height: settings.height,
+        channels: channels(aov),
+        pixels: rows.iter().flatten().map(|sample| sample.layers[l]).collect(),
+    };
+    Frame {
+        width: settings.width,
+        height: settings.height,
+        pixels: rows.iter().flatten().map(|sample| sample.radiance).collect(),
+        layers: resolve.aovs.iter().enumerate().map(layer).collect(),
+        ..Frame::default()
+    }
+}
+
+/// The mean of a jittered grid of samples over one pixel.
+fn pixel(resolve: &Resolve, settings: &Settings, x: u32, y: u32) -> Sample {
+    let grid = (settings.samples_per_pixel as f32).sqrt().ceil() as u32;
+    let camera = &resolve.scene.camera;
+    let size = Vec2::new(settings.width as f32, settings.height as f32);
+    let mut sum = Sample { radiance: Vec4::ZERO, layers: vec![Vec4::ZERO; resolve.aovs.len()] };
+    for i in 0..grid * grid {
+        let jitter = random2(x, y, STREAM + (i << 8), settings.seed);
+        let within = (Vec2::new((i % grid) as f32, (i / grid) as f32) + jitter) / grid as f32;
+        let place = (Vec2::new(x as f32, y as f32) + within) / size;
+        let ndc = Vec2::new(2.0 * place.x - 1.0, 1.0 - 2.0 * place.y);
+        let turn = random2(y, x, STREAM + (i << 8), settings.seed);
+        let sample = resolve.sample(camera.position_mm, camera.dir_through(ndc, size.x / size.y), turn);
+        sum.radiance += sample.radiance;
+        sum.layers.iter_mut().zip(&sample.layers).for_each(|(sum, value)| *sum += *value);
+    }
+    let scale = 1.0 / (grid * grid) as f32;
+    Sample { radiance: sum.radiance * scale, layers: sum.layers.iter().map(|&l| l * scale).collect() }
+}
+
+fn channels(aov: Aov) -> Vec<String> {
+    let names: &[&str] = match aov {
+        Aov::Stretch => &["U", "V"],
+        Aov::Thickness => &["light0", "light1", "light2", "light3"],
+        Aov::Normal => &["X", "Y", "Z"],
+        Aov::Charts => &["chart"],
+        _ => &["R", "G", "B"],
+    };
+    names.iter().map(|&name| name.to_owned()).collect()
+}
+
+fn warnings(scene: &Scene) -> Vec<String> {
+    let open = scene.objects.iter().filter(|object| !object.closed);
+    open.map(|object| {
+        let name = &object.name;
+        format!("'{name}' is not a closed surface: light that enters may find no way out, and thin parts stay dark")
+    })
+    .collect()
+}
+
+/// Adds up the time of each pass.
+#[derive(Default)]
+struct Clock {
+    passes: Vec<PassTime>,
+}
+
+impl Clock {
+    fn time<T>(&mut self, name: &str, work: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let result = work();
+        let time = start.elapsed();
+        match self.passes.iter_mut().find(|pass| pass.name == name) {
+            Some(pass) => pass.time += time,
+            None => self.passes.push(PassTime { name: name.to_owned(), time }),
+        }
+        result
+    }
+}

@@ -1,7 +1,26 @@
 //! Light in tissue: media, diffusion profiles and the sums of Gaussians that stand for them.
+//!
+//! The way of the data: a [`Medium`] gives a [`Dipole`], a dipole is a [`Profile`] (radial, and in closed form in
+//! spatial frequency), a profile is fitted by a [`GaussianSum`], three channels share variances in an
+//! [`RgbGaussianSum`]. Symbols are listed in `docs/notation.md`.
+//! Lengths in mm, coefficients in 1/mm. Everything here is f64 and pure.
 
+pub mod boundary;
+mod dipole;
+pub mod fit;
 mod gaussian_sum;
 mod medium;
+pub mod presets;
+mod profile;
+mod rgb_gaussian_sum;
 
-pub use gaussian_sum::{Gaussian, GaussianSum, RgbGaussianSum};
-pub use medium::Medium;
+pub use dipole::{DiffusionValidity, Dipole};
+pub use fit::{Fit, FitError, FitMethod, RgbFit, fit, fit_rgb, relative_rms_power_error, rgb_kernel};
+pub use gaussian_sum::{Gaussian, GaussianSum};
+pub use medium::{Medium, MediumError};
+pub use presets::{Preset, UnknownPreset};
+pub use profile::Profile;
+pub use rgb_gaussian_sum::RgbGaussianSum;
+
+#[cfg(test)]
+mod oracle;

@@ -1,0 +1,148 @@
+//! Linear least squares for the weights of given variances, free or not negative.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Sign rule for the weights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum SignRule {
+    /// Any sign.
+    Free,
+    /// Zero or more (Lawson & Hanson 1974, chapter 23, algorithm NNLS).
+    NotNegative,
+}
+
+/// Weights that minimise |b - A w|, and the orthogonal basis of the columns in use.
+pub(super) struct LeastSquares {
+    /// One weight per column; 0 for columns not in use.
+    pub(super) weights: Vec<f64>,
+    /// Indices of the columns in use.
+    pub(super) active: Vec<usize>,
+    /// Orthonormal basis of those columns (rows × active).
+    pub(super) q: DMatrix<f64>,
+    /// Triangle with A_active = Q R.
+    pub(super) r: DMatrix<f64>,
+}
+
+/// Solves for the weights; `None` when columns coincide to rounding or a number is not finite.
+pub(super) fn solve(a: &DMatrix<f64>, b: &DVector<f64>, rule: SignRule) -> Option<LeastSquares> {
+    let all: Vec<usize> = (0..a.ncols()).collect();
+    let free = solve_on(a, b, &all)?;
+    if rule == SignRule::Free || free.weights.iter().all(|&w| w >= 0.0) {
+        return Some(free);
+    }
+    // All the algorithm asks of A and b is in the small triangle.
+    let small_b = free.q.tr_mul(b);
+    let active = not_negative_set(&free.r, &small_b)?;
+    solve_on(a, b, &active)
+}
+
+fn solve_on(a: &DMatrix<f64>, b: &DVector<f64>, active: &[usize]) -> Option<LeastSquares> {
+    let (q, r) = a.select_columns(active).qr().unpack();
+    let w = r.solve_upper_triangular(&q.tr_mul(b))?;
+    let mut weights = vec![0.0; a.ncols()];
+    for (&column, &weight) in active.iter().zip(w.iter()) {
+        weights[column] = weight;
+    }
+    let finite = weights.iter().all(|w| w.is_finite());
+    finite.then_some(LeastSquares { weights, active: active.to_vec(), q, r })
+}
+
+/// The columns with positive weight at the constrained optimum.
+fn not_negative_set(a: &DMatrix<f64>, b: &DVector<f64>) -> Option<Vec<usize>> {
+    let n = a.ncols();
+    let (mut active, mut w): (Vec<usize>, _) = (Vec::new(), DVector::zeros(n));
+    // 3n rounds are Lawson & Hanson's own limit; the set shown then is a good one, if not the best.
+    for _ in 0..3 * n {
+        let gradient = a.tr_mul(&(b - a * &w));
+        let waiting = (0..n).filter(|i| !active.contains(i));
+        let next = waiting.max_by(|&i, &j| gradient[i].total_cmp(&gradient[j]));
+        // Rounding of n products of size |a||b|: below it a gradient is not a direction.
+        let noise = n as f64 * f64::EPSILON * a.norm() * b.norm();
+        let Some(next) = next.filter(|&i| gradient[i] > noise) else { break };
+        active.push(next);
+        retreat_until_not_negative(a, b, &mut active, &mut w)?;
+    }
+    active.sort_unstable();
+    (!active.is_empty()).then_some(active)
+}
+
+/// The inner loop of NNLS: walk towards the free optimum of the active columns, dropping each one that hits zero.
+fn retreat_until_not_negative(
+    a: &DMatrix<f64>,
+    b: &DVector<f64>,
+    active: &mut Vec<usize>,
+    w: &mut DVector<f64>,
+) -> Option<()> {
+    while !active.is_empty() {
+        let goal = solve_on(a, b, active)?.weights;
+        let step_to_zero = |&i: &usize| if goal[i] <= 0.0 { w[i] / (w[i] - goal[i]) } else { 1.0 };
+        let step = active.iter().map(step_to_zero).fold(1.0, f64::min);
+        // 0/0: a column that entered at 0 and wants to leave at once.
+        let step = if step.is_nan() { 0.0 } else { step };
+        for &i in active.iter() {
+            w[i] += step * (goal[i] - w[i]);
+        }
+        if active.iter().all(|&i| goal[i] > 0.0) {
+            return Some(());
+        }
+        let leaves = |i: &usize| goal[*i] <= 0.0 && w[*i] <= f64::EPSILON * goal[*i].abs();
+        let count = active.len();
+        for i in active.iter().copied().filter(leaves).collect::<Vec<_>>() {
+            w[i] = 0.0;
+        }
+        active.retain(|i| !(goal[*i] <= 0.0 && w[*i] == 0.0));
+        if active.len() == count {
+            return None;
+        }
+    }
+    Some(())
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+    use super::*;
+    use proptest::prelude::*;
+
+    fn cost(a: &DMatrix<f64>, b: &DVector<f64>, w: &[f64]) -> f64 {
+        (b - a * DVector::from_column_slice(w)).norm()
+    }
+
+    /// The obvious way: try every subset of columns.
+    fn best_subset(a: &DMatrix<f64>, b: &DVector<f64>) -> f64 {
+        let subsets = (1_usize..1 << a.ncols())
+            .map(|bits| (0..a.ncols()).filter(|i| bits >> i & 1 == 1).collect::<Vec<_>>());
+        let solved = subsets.filter_map(|s| solve_on(a, b, &s));
+        solved
+            .filter(|s| s.weights.iter().all(|&w| w >= 0.0))
+            .map(|s| cost(a, b, &s.weights))
+            .fold(b.norm(), f64::min)
+    }
+
+    proptest! {
+        #[test]
+        fn not_negative_meets_the_best_subset(numbers in prop::collection::vec(-1.0..1.0_f64, 48)) {
+            let a = DMatrix::from_column_slice(8, 5, &numbers[..40]);
+            let b = DVector::from_column_slice(&numbers[40..]);
+            // No column helps at all: the set is empty and there is no fit.
+            if let Some(s) = solve(&a, &b, SignRule::NotNegative) {
+                prop_assert!(s.weights.iter().all(|&w| w >= -1e-12));
+                // Random 8 × 5 matrices: condition numbers to 1e4, so 1e-12 relative; the cost errs by its square.
+                prop_assert!(cost(&a, &b, &s.weights) <= best_subset(&a, &b) * (1.0 + 1e-9));
+            } else {
+                prop_assert!(best_subset(&a, &b) >= b.norm() * (1.0 - 1e-9));
+            }
+        }
+
+        #[test]
+        fn free_residual_is_orthogonal_to_the_columns(numbers in prop::collection::vec(-1.0..1.0_f64, 48)) {
+            let a = DMatrix::from_column_slice(8, 5, &numbers[..40]);
+            let b = DVector::from_column_slice(&numbers[40..]);
+            let s = solve(&a, &b, SignRule::Free).unwrap();
+            let left = a.tr_mul(&(&b - &a * DVector::from_vec(s.weights.clone())));
+            // Backward stable: 40 roundings of numbers of size |a| (|b| + |a||w|).
+            let w = DVector::from_vec(s.weights).norm();
+            prop_assert!(left.norm() < 40.0 * f64::EPSILON * a.norm() * (b.norm() + a.norm() * w));
+        }
+    }
+}

@@ -42,7 +42,12 @@ pub trait Renderer {
     ///
     /// # Errors
     /// If the scene is empty, a setting out of range, or a material unknown.
-    fn render(&self, scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Result<Frame, RenderError>;
+    fn render(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        progress: &dyn Progress,
+    ) -> Result<Frame, RenderError>;
 }
 
 /// Draws on all cores of the processor, through the global rayon pool.
@@ -58,7 +63,12 @@ impl Renderer for CpuRenderer {
         format!("{} threads", rayon::current_num_threads())
     }
 
-    fn render(&self, scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Result<Frame, RenderError> {
+    fn render(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        progress: &dyn Progress,
+    ) -> Result<Frame, RenderError> {
         settings.check()?;
         if scene.objects.iter().all(|object| object.mesh.triangles.is_empty()) {
             return Err(RenderError::EmptyScene);

@@ -24,7 +24,14 @@ pub struct Ambient {
 
 impl Ambient {
     /// Casts `samples` rays from every texel of the quarter-size map.
-    pub fn new(object: &Object, atlas: &Atlas, bvh: &Bvh, samples: u32, seed: u64, progress: &dyn Progress) -> Self {
+    pub fn new(
+        object: &Object,
+        atlas: &Atlas,
+        bvh: &Bvh,
+        samples: u32,
+        seed: u64,
+        progress: &dyn Progress,
+    ) -> Self {
         let half = atlas.charts.halved();
         let charts = half.halved();
         progress.begin("ambient occlusion", charts.size as u64);

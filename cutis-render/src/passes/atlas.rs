@@ -61,11 +61,13 @@ impl Atlas {
     pub fn new(object: &Object, size: usize) -> Self {
         let mut surface = vec![EMPTY; size * size];
         let buckets = triangles_by_band(object, size);
-        surface.par_chunks_mut(BAND_ROWS * size).zip(&buckets).enumerate().for_each(|(band, (rows, triangles))| {
-            for &triangle in triangles {
-                rasterise(object, triangle, size, band * BAND_ROWS, rows);
-            }
-        });
+        surface.par_chunks_mut(BAND_ROWS * size).zip(&buckets).enumerate().for_each(
+            |(band, (rows, triangles))| {
+                for &triangle in triangles {
+                    rasterise(object, triangle, size, band * BAND_ROWS, rows);
+                }
+            },
+        );
         for _ in 0..PADDING {
             pad(object, size, &mut surface);
         }
@@ -84,13 +86,17 @@ impl ChartMap {
     /// Measures how far every texel is from the edge of its chart.
     pub fn new(size: usize, chart: Vec<u32>) -> Self {
         let mut reach_u = vec![0; size * size];
-        reach_u.par_chunks_mut(size).zip(chart.par_chunks(size)).for_each(|(reach, row)| reach_along(row, reach));
+        reach_u
+            .par_chunks_mut(size)
+            .zip(chart.par_chunks(size))
+            .for_each(|(reach, row)| reach_along(row, reach));
         let mut transposed = vec![0; size * size];
         transposed.par_chunks_mut(size).enumerate().for_each(|(x, reach)| {
             let column: Vec<u32> = (0..size).map(|y| chart[y * size + x]).collect();
             reach_along(&column, reach);
         });
-        let reach_v = (0..size * size).into_par_iter().map(|i| transposed[i % size * size + i / size]).collect();
+        let reach_v =
+            (0..size * size).into_par_iter().map(|i| transposed[i % size * size + i / size]).collect();
         Self { size, chart, reach_u, reach_v }
     }
 
@@ -176,7 +182,11 @@ fn rasterise(object: &Object, triangle: u32, size: usize, first_row: usize, rows
             let texel = &mut rows[(y - first_row) * size + x];
             // Both sides of a shared edge may claim its texels (the slack is rounding): the first triangle has them.
             if b1 >= -1e-6 && b2 >= -1e-6 && b1 + b2 <= 1.0 + 1e-6 && texel.triangle == NO_CHART {
-                *texel = TexelSurface { triangle, b1: b1.clamp(0.0, 1.0), b2: b2.clamp(0.0, 1.0 - b1.clamp(0.0, 1.0)) };
+                *texel = TexelSurface {
+                    triangle,
+                    b1: b1.clamp(0.0, 1.0),
+                    b2: b2.clamp(0.0, 1.0 - b1.clamp(0.0, 1.0)),
+                };
             }
         }
     }
@@ -187,7 +197,13 @@ fn rasterise(object: &Object, triangle: u32, size: usize, first_row: usize, rows
 fn pad(object: &Object, size: usize, surface: &mut Vec<TexelSurface>) {
     let grown = (0..size * size)
         .into_par_iter()
-        .map(|i| if surface[i].triangle == NO_CHART { nearest_neighbour(object, size, surface, i) } else { surface[i] })
+        .map(|i| {
+            if surface[i].triangle == NO_CHART {
+                nearest_neighbour(object, size, surface, i)
+            } else {
+                surface[i]
+            }
+        })
         .collect();
     *surface = grown;
 }

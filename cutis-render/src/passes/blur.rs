@@ -49,7 +49,9 @@ impl Widening {
     /// Variance in texel² that the step adds where a texel is `texel_mm` wide.
     fn variance_texel2(self, texel_mm: f32) -> f32 {
         let per_mm2 = 1.0 / (texel_mm * texel_mm);
-        TAPS.discrete_variance(self.to_mm2 * per_mm2) - TAPS.discrete_variance(self.from_mm2 * per_mm2) - self.saved_texel2
+        TAPS.discrete_variance(self.to_mm2 * per_mm2)
+            - TAPS.discrete_variance(self.from_mm2 * per_mm2)
+            - self.saved_texel2
     }
 }
 
@@ -63,16 +65,18 @@ pub fn blur(charts: &ChartMap, axis: Axis, widening: Widening, source: &Fields, 
             row.push(slice);
         }
     }
-    rows.into_par_iter().zip(stretch_mm.par_chunks_mut(size)).enumerate().for_each(|(y, (mut layers, stretch))| {
-        for x in 0..size {
-            let texel = y * size + x;
-            let reads = Reads::at(charts, axis, widening, &source.stretch_mm, texel);
-            for (target, source) in layers.iter_mut().zip(&source.layers) {
-                target[x] = reads.gather(source, texel);
+    rows.into_par_iter().zip(stretch_mm.par_chunks_mut(size)).enumerate().for_each(
+        |(y, (mut layers, stretch))| {
+            for x in 0..size {
+                let texel = y * size + x;
+                let reads = Reads::at(charts, axis, widening, &source.stretch_mm, texel);
+                for (target, source) in layers.iter_mut().zip(&source.layers) {
+                    target[x] = reads.gather(source, texel);
+                }
+                stretch[x] = reads.gather(&source.stretch_mm, texel);
             }
-            stretch[x] = reads.gather(&source.stretch_mm, texel);
-        }
-    });
+        },
+    );
 }
 
 /// The texels one texel reads, relative to itself, and their weights.
@@ -89,8 +93,13 @@ struct Reads {
 impl Reads {
     #[inline]
     fn at(charts: &ChartMap, axis: Axis, widening: Widening, stretch_mm: &[Vec2], texel: usize) -> Self {
-        let mut reads =
-            Self { near: [0; 3], far: [0; 3], near_weight: [0.0; 3], far_weight: [0.0; 3], centre_weight: 1.0 };
+        let mut reads = Self {
+            near: [0; 3],
+            far: [0; 3],
+            near_weight: [0.0; 3],
+            far_weight: [0.0; 3],
+            centre_weight: 1.0,
+        };
         if charts.chart[texel] == NO_CHART {
             return reads;
         }

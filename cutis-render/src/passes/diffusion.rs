@@ -13,7 +13,13 @@ use std::sync::Arc;
 /// Something that can spread light over a surface.
 pub trait DiffusionOperator: Sync {
     /// Blurs `fields` by every variance in turn (growing, mm²). Level 0 of the result is `fields` itself.
-    fn diffuse(&self, charts: Arc<ChartMap>, fields: Fields, variances_mm2: &[f32], progress: &dyn Progress) -> Diffused;
+    fn diffuse(
+        &self,
+        charts: Arc<ChartMap>,
+        fields: Fields,
+        variances_mm2: &[f32],
+        progress: &dyn Progress,
+    ) -> Diffused;
 }
 
 /// The light before and after every Gaussian.
@@ -65,7 +71,13 @@ const BILINEAR_TEXEL2: f32 = 1.0 / 6.0;
 const HALVING_TEXEL2: f32 = 1.0 / 16.0;
 
 impl DiffusionOperator for Separable {
-    fn diffuse(&self, charts: Arc<ChartMap>, fields: Fields, variances_mm2: &[f32], progress: &dyn Progress) -> Diffused {
+    fn diffuse(
+        &self,
+        charts: Arc<ChartMap>,
+        fields: Fields,
+        variances_mm2: &[f32],
+        progress: &dyn Progress,
+    ) -> Diffused {
         progress.begin("blur", variances_mm2.len() as u64);
         let mut state = State::new(charts, fields);
         let mut levels = vec![state.level()];
@@ -124,7 +136,8 @@ impl State {
         self.small_mm *= 2.0;
         self.median_mm *= 2.0;
         // A quarter of each amount, because a texel² is now four times as large.
-        self.saved_texel2 = 0.25 * self.saved_texel2 + HALVING_TEXEL2 + BILINEAR_TEXEL2 - 0.25 * self.left_to_read_texel2;
+        self.saved_texel2 =
+            0.25 * self.saved_texel2 + HALVING_TEXEL2 + BILINEAR_TEXEL2 - 0.25 * self.left_to_read_texel2;
         self.left_to_read_texel2 = BILINEAR_TEXEL2;
     }
 
@@ -178,7 +191,8 @@ where
         if chart == NO_CHART {
             return zero;
         }
-        let own = fine.children(i % coarse.size, i / coarse.size).into_iter().filter(|&c| fine.chart[c] == chart);
+        let own =
+            fine.children(i % coarse.size, i / coarse.size).into_iter().filter(|&c| fine.chart[c] == chart);
         let (sum, count) = own.fold((zero, 0.0f32), |(sum, count), c| (sum + map[c], count + 1.0));
         sum * count.recip()
     };

@@ -101,18 +101,28 @@ fn light_texel(inputs: &IrradianceInputs, x: usize, y: usize, layer_count: usize
     for l in 0..if shares { inputs.scene.lights.len() } else { 0 } {
         row[layer_count + l / 4][x][l % 4] /= from_lights.element_sum().max(f32::MIN_POSITIVE);
     }
-    let from_environment = from_environment(inputs, &point, normal, inputs.atlas.charts.chart[texel]) * inputs.rho_dt.mean(roughness, rho_s);
+    let from_environment = from_environment(inputs, &point, normal, inputs.atlas.charts.chart[texel])
+        * inputs.rho_dt.mean(roughness, rho_s);
     let film = material.albedo.at(point.uv).max(Vec3::ZERO).powf(material.albedo_mix);
     row[0][x] = ((from_lights + from_environment) * film).extend(row[0][x].w);
 }
 
 /// Irradiance from one light, shadows included, W/m².
-fn from_light(inputs: &IrradianceInputs, l: usize, point: &SurfacePoint, normal: Vec3, [x, y]: [usize; 2]) -> Vec3 {
+fn from_light(
+    inputs: &IrradianceInputs,
+    l: usize,
+    point: &SurfacePoint,
+    normal: Vec3,
+    [x, y]: [usize; 2],
+) -> Vec3 {
     let light = &inputs.scene.lights[l];
     let towards = light.sample(point.position_mm);
     let cos = normal.dot(towards.dir_to_light);
     // Relief may turn a normal towards a light that the smooth surface does not face.
-    if cos <= 0.0 || point.normal.dot(towards.dir_to_light) <= 0.0 || towards.irradiance_w_per_m2 == Vec3::ZERO {
+    if cos <= 0.0
+        || point.normal.dot(towards.dir_to_light) <= 0.0
+        || towards.irradiance_w_per_m2 == Vec3::ZERO
+    {
         return Vec3::ZERO;
     }
     let shift = random2(x as u32, y as u32, STREAM + l as u32, inputs.settings.seed);

@@ -153,7 +153,8 @@ impl Resolve<'_> {
                     let here = self.shadowed_place(place, &there);
                     let maps = &self.maps[there.object];
                     let kernel = &place.maps.kernel;
-                    sum += transmitted(kernel, l, (&place.maps.diffused, &here), (&maps.diffused, &there)) * share;
+                    sum += transmitted(kernel, l, (&place.maps.diffused, &here), (&maps.diffused, &there))
+                        * share;
                 }
             }
         }
@@ -171,7 +172,8 @@ impl Resolve<'_> {
 
     fn shadowed_place(&self, place: &Place, there: &LightFacing) -> ShadowedPlace {
         let same = std::ptr::eq(place.maps, &self.maps[there.object]) && place.chart == there.chart;
-        let apart_mm = if same { along_surface_mm(place.maps, place.point.uv, there.uv) } else { f32::INFINITY };
+        let apart_mm =
+            if same { along_surface_mm(place.maps, place.point.uv, there.uv) } else { f32::INFINITY };
         ShadowedPlace { uv: place.point.uv, chart: place.chart, apart_mm }
     }
 

@@ -28,7 +28,8 @@ pub struct DiffusionReport {
 
 /// Measures an object's diffused light.
 pub fn diffusion_report(object: &Object, maps: &ObjectMaps) -> DiffusionReport {
-    let before = energy(object, |uv, chart| maps.kernel.total() * maps.diffused.sample(0, 0, uv, chart).truncate());
+    let before =
+        energy(object, |uv, chart| maps.kernel.total() * maps.diffused.sample(0, 0, uv, chart).truncate());
     let after = energy(object, |uv, chart| diffused(&maps.diffused, &maps.kernel.weights, uv, chart));
     let [mean, p99] = seam_errors(object, maps);
     DiffusionReport {
@@ -73,12 +74,14 @@ fn energy(object: &Object, light: impl Fn(Vec2, u32) -> Vec3) -> f64 {
 
 /// Mean and 99th percentile of |a - b| over the mean of all a and b.
 fn seam_errors(object: &Object, maps: &ObjectMaps) -> [f64; 2] {
-    let pairs: Vec<[f64; 2]> = object.charts.seams.iter().flat_map(|seam| sides(object, maps, seam)).collect();
+    let pairs: Vec<[f64; 2]> =
+        object.charts.seams.iter().flat_map(|seam| sides(object, maps, seam)).collect();
     if pairs.is_empty() {
         return [0.0; 2];
     }
     let mean = pairs.iter().map(|[a, b]| 0.5 * (a + b)).sum::<f64>() / pairs.len() as f64;
-    let mut errors: Vec<f64> = pairs.iter().map(|[a, b]| (a - b).abs() / mean.max(f64::MIN_POSITIVE)).collect();
+    let mut errors: Vec<f64> =
+        pairs.iter().map(|[a, b]| (a - b).abs() / mean.max(f64::MIN_POSITIVE)).collect();
     errors.sort_by(f64::total_cmp);
     let p99 = errors[(errors.len() - 1) * 99 / 100];
     [errors.iter().sum::<f64>() / errors.len() as f64, p99]

@@ -38,7 +38,8 @@ impl Shine {
         let cos_eye = self.normal.dot(self.dir_to_eye).max(0.0);
         let mirrored = self.normal * (2.0 * self.normal.dot(self.dir_to_eye)) - self.dir_to_eye;
         let albedo = self.rho_s * rho_dt.specular_albedo(cos_eye, self.roughness);
-        environment.reflection(mirrored, self.roughness) * (albedo * specular_openness(cos_eye, open, self.roughness))
+        environment.reflection(mirrored, self.roughness)
+            * (albedo * specular_openness(cos_eye, open, self.roughness))
     }
 }
 

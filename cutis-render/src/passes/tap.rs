@@ -126,7 +126,10 @@ mod tests {
         for variance in [0.001f32, 0.02, 0.3, 1.0, 1.083, 2.5, 7.7, 40.0, 900.0] {
             let got = variance_at(&weights, f64::from(TAPS.spacing(variance))) as f32;
             // The table has 4096 steps of 0.016 texels deviation, interpolated; narrow kernels feel the step most.
-            assert!((got / variance - 1.0).abs() < 5e-3 || (got - variance).abs() < 1e-4, "{variance}: {got}");
+            assert!(
+                (got / variance - 1.0).abs() < 5e-3 || (got - variance).abs() < 1e-4,
+                "{variance}: {got}"
+            );
         }
     }
 

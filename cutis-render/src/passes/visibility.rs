@@ -38,7 +38,12 @@ pub fn visible_fraction(bvh: &Bvh, point: &SurfacePoint, light: &Light, samples:
 
 /// The light-facing surface behind a point that faces away from the light: where a ray towards the light leaves the
 /// body. `None` if the point faces the light, or the ray never leaves (open meshes).
-pub fn light_facing_surface(scene: &Scene, bvh: &Bvh, point: &SurfacePoint, light: &Light) -> Option<LightFacing> {
+pub fn light_facing_surface(
+    scene: &Scene,
+    bvh: &Bvh,
+    point: &SurfacePoint,
+    light: &Light,
+) -> Option<LightFacing> {
     let towards = light.sample(point.position_mm);
     if point.normal.dot(towards.dir_to_light) >= 0.0 {
         return None;

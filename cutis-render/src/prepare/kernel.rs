@@ -1,7 +1,8 @@
 //! From a material's numbers to the one kernel all passes use: variances and a weight per channel.
 
 use crate::RenderError;
-use cutis_optics::RgbGaussianSum;
+use cutis_optics::{RgbGaussianSum, presets, rgb_kernel};
+use cutis_scene::{Material, Scattering};
 use glam::Vec3;
 
 /// The diffusion kernel as the passes want it.
@@ -11,6 +12,28 @@ pub struct Kernel {
     pub variances_mm2: Vec<f32>,
     /// Weight per channel of each Gaussian.
     pub weights: Vec<Vec3>,
+}
+
+/// The kernel of a material, with `gaussians` terms where it has to be fitted.
+///
+/// A material with an albedo of its own gets its kernel scaled to white, so that the albedo is the colour seen
+/// (d'Eon, Luebke & Enderton 2007, section 5.3); one with a white albedo shows the colour of its medium.
+///
+/// # Errors
+/// If the preset is unknown, the medium unphysical, or the fit impossible.
+pub fn kernel_of(material: &Material, gaussians: usize) -> Result<Kernel, RenderError> {
+    let bad = |reason: String| RenderError::BadMaterial { material: material.name.clone(), reason };
+    let sum = match &material.scattering {
+        Scattering::Preset(name) => {
+            let preset = presets::find(name).map_err(|e| bad(e.to_string()))?;
+            preset.kernel(gaussians).map_err(|e| bad(e.to_string()))?
+        }
+        Scattering::Medium(media) => rgb_kernel(media, gaussians).map_err(|e| bad(e.to_string()))?,
+        Scattering::Kernel(sum) => sum.clone(),
+    };
+    let kernel = Kernel::new(&sum).checked(&material.name)?;
+    let coloured = material.albedo.texture.is_some() || material.albedo.factor != Vec3::ONE;
+    Ok(if coloured { kernel.normalised_to_white() } else { kernel })
 }
 
 impl Kernel {
@@ -57,7 +80,9 @@ impl Kernel {
             return Err(bad("its kernel has no Gaussian, or not one weight for each".to_owned()));
         }
         if let Some(v) = self.variances_mm2.iter().find(|v| !v.is_finite() || **v < 0.0) {
-            return Err(bad(format!("a variance of its kernel is {v} mm²; it must be finite and not negative")));
+            return Err(bad(format!(
+                "a variance of its kernel is {v} mm²; it must be finite and not negative"
+            )));
         }
         if let Some(w) = self.weights.iter().find(|w| !w.is_finite()) {
             return Err(bad(format!("a weight of its kernel is {w}; it must be finite")));

@@ -88,7 +88,8 @@ fn coarse_rays(environment: &Environment) -> Vec<Ray> {
 fn filter(frame: &Environment, rays: &[Ray], lobe: impl Fn(f32) -> f32 + Sync) -> Texture {
     let texels = targets(frame)
         .map(|dir| {
-            let sum: Vec3 = rays.iter().map(|ray| ray.radiance * (lobe(ray.dir.dot(dir)) * ray.solid_angle_sr)).sum();
+            let sum: Vec3 =
+                rays.iter().map(|ray| ray.radiance * (lobe(ray.dir.dot(dir)) * ray.solid_angle_sr)).sum();
             sum.extend(1.0).to_array()
         })
         .collect();

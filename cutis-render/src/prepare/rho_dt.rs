@@ -30,7 +30,8 @@ impl RhoDt {
         let albedo: Vec<f32> = (0..ROUGHNESSES * COSINES)
             .map(|i| directional_albedo(cosine_of(i % COSINES), roughness_of(i / COSINES), f0))
             .collect();
-        let mean_albedo = (0..ROUGHNESSES).map(|r| mean_over_hemisphere(&albedo[r * COSINES..][..COSINES])).collect();
+        let mean_albedo =
+            (0..ROUGHNESSES).map(|r| mean_over_hemisphere(&albedo[r * COSINES..][..COSINES])).collect();
         Self { albedo, mean_albedo }
     }
 
@@ -69,7 +70,8 @@ fn roughness_of(row: usize) -> f32 {
 
 /// Row at or below a roughness, and how far it is to the next.
 fn roughness_row(roughness: f32) -> (usize, f32) {
-    let y = (roughness.clamp(MIN_ROUGHNESS, 1.0) - MIN_ROUGHNESS) / (1.0 - MIN_ROUGHNESS) * (ROUGHNESSES - 1) as f32;
+    let y = (roughness.clamp(MIN_ROUGHNESS, 1.0) - MIN_ROUGHNESS) / (1.0 - MIN_ROUGHNESS)
+        * (ROUGHNESSES - 1) as f32;
     let row = (y as usize).min(ROUGHNESSES - 2);
     (row, y - row as f32)
 }
@@ -124,10 +126,22 @@ mod tests {
     #[test]
     fn table_agrees_with_quadrature_over_directions() {
         let table = RhoDt::new(0.028);
-        for (cos, m) in [(1.0, 0.3), (0.7, 0.3), (0.33, 0.3), (0.12, 0.3), (0.9, 0.12), (0.41, 0.57), (0.2, 0.9), (0.55, 0.23)] {
+        for (cos, m) in [
+            (1.0, 0.3),
+            (0.7, 0.3),
+            (0.33, 0.3),
+            (0.12, 0.3),
+            (0.9, 0.12),
+            (0.41, 0.57),
+            (0.2, 0.9),
+            (0.55, 0.23),
+        ] {
             let quadrature = albedo_by_quadrature(cos, m, 0.028);
             let tabulated = f64::from(table.specular_albedo(cos, m));
-            assert!((tabulated - quadrature).abs() < 1e-3, "cos {cos}, m {m}: {tabulated} against {quadrature}");
+            assert!(
+                (tabulated - quadrature).abs() < 1e-3,
+                "cos {cos}, m {m}: {tabulated} against {quadrature}"
+            );
         }
     }
 
@@ -136,7 +150,10 @@ mod tests {
         let table = RhoDt::new(0.028);
         for cos in [1.0, 0.8, 0.5] {
             // A lobe of slope m = 0.02 widens the mirror by O(m²).
-            assert!((table.specular_albedo(cos, MIN_ROUGHNESS) - fresnel_schlick(cos, 0.028)).abs() < 2e-3, "{cos}");
+            assert!(
+                (table.specular_albedo(cos, MIN_ROUGHNESS) - fresnel_schlick(cos, 0.028)).abs() < 2e-3,
+                "{cos}"
+            );
         }
     }
 

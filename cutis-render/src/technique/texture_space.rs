@@ -59,7 +59,8 @@ impl<'a> LitScene<'a> {
     pub fn new(scene: &'a Scene, settings: &Settings, progress: &dyn Progress) -> Result<Self, RenderError> {
         let mut clock = Clock::default();
         let bvh = clock.time("acceleration structure", || Bvh::build(&scene.objects));
-        let environment = clock.time("environment", || scene.environment.as_ref().map(FilteredEnvironment::new));
+        let environment =
+            clock.time("environment", || scene.environment.as_ref().map(FilteredEnvironment::new));
         let sizes = atlas_sizes(&scene.objects, settings.irradiance_size);
         let mut maps = Vec::with_capacity(scene.objects.len());
         for (object, size) in scene.objects.iter().zip(sizes) {
@@ -99,14 +100,22 @@ impl<'a> LitScene<'a> {
                 let (size, pixels) = level(0)?;
                 (size, pixels.iter().map(|p| Vec4::splat(p.w)).collect())
             }
-            Aov::Stretch => (maps.atlas.size, maps.stretch_mm.iter().map(|s| s.extend(0.0).extend(0.0)).collect()),
+            Aov::Stretch => {
+                (maps.atlas.size, maps.stretch_mm.iter().map(|s| s.extend(0.0).extend(0.0)).collect())
+            }
             Aov::Charts => {
                 let number = |&c: &u32| Vec4::splat(if c == u32::MAX { -1.0 } else { c as f32 });
                 (maps.atlas.size, maps.atlas.charts.chart.iter().map(number).collect())
             }
             Aov::Normal | Aov::Albedo | Aov::Specular | Aov::Transmission => return None,
         };
-        Some(Layer { name: aov.to_string(), width: size as u32, height: size as u32, channels: channels(aov), pixels })
+        Some(Layer {
+            name: aov.to_string(),
+            width: size as u32,
+            height: size as u32,
+            channels: channels(aov),
+            pixels,
+        })
     }
 }
 
@@ -120,7 +129,12 @@ struct ObjectPass<'a> {
 }
 
 impl ObjectPass<'_> {
-    fn run(&self, size: usize, clock: &mut Clock, progress: &dyn Progress) -> Result<ObjectMaps, RenderError> {
+    fn run(
+        &self,
+        size: usize,
+        clock: &mut Clock,
+        progress: &dyn Progress,
+    ) -> Result<ObjectMaps, RenderError> {
         let (object, settings) = (self.object, self.settings);
         let kernel = clock.time("kernel", || self.kernel())?;
         let rho_dt = clock.time("rho_dt", || RhoDt::new(object.material.f0));
@@ -144,7 +158,8 @@ impl ObjectPass<'_> {
         let lit = clock.time("irradiance", || irradiance(&inputs, progress));
         let charts = Arc::new(atlas.charts.clone());
         let fields = Fields { layers: lit.layers, stretch_mm: stretch_mm.clone() };
-        let diffused = clock.time("blur", || Separable.diffuse(charts, fields, &kernel.variances_mm2, progress));
+        let diffused =
+            clock.time("blur", || Separable.diffuse(charts, fields, &kernel.variances_mm2, progress));
         Ok(ObjectMaps { atlas, stretch_mm, ambient, diffused, shares: lit.shares, kernel, rho_dt })
     }
 
@@ -160,12 +175,17 @@ impl ObjectPass<'_> {
 /// Size of each object's texture: the largest object gets all of it, others by the square root of their area, in
 /// powers of two below.
 fn atlas_sizes(objects: &[Object], largest: u32) -> Vec<u32> {
-    let area = |object: &Object| (0..object.mesh.triangles.len()).map(|t| f64::from(object.mesh.area_mm2(t))).sum::<f64>();
+    let area = |object: &Object| {
+        (0..object.mesh.triangles.len()).map(|t| f64::from(object.mesh.area_mm2(t))).sum::<f64>()
+    };
     let areas: Vec<f64> = objects.iter().map(area).collect();
     let most = areas.iter().copied().fold(0.0, f64::max);
     let size = |area: &f64| {
         let mut size = largest;
-        while size.is_multiple_of(2) && size / 2 >= MIN_ATLAS && f64::from(size / 2) >= f64::from(largest) * (area / most).sqrt() {
+        while size.is_multiple_of(2)
+            && size / 2 >= MIN_ATLAS
+            && f64::from(size / 2) >= f64::from(largest) * (area / most).sqrt()
+        {
             size /= 2;
         }
         size

@@ -77,6 +77,14 @@ impl Problem {
         Ok(Self { grid, method, energy_row, targets })
     }
 
+    /// Smallest and largest ln v (mm²) worth starting from: 0.0025 to 1100 times 1/k_half² where all channels are alike,
+    /// wider by what their scales differ.
+    pub(super) fn start_range_ln_mm2(&self) -> (f64, f64) {
+        let unit = |k: f64| -2.0 * k.ln();
+        let (low, high) = self.grid.k_half_range_per_mm();
+        (unit(high) - 6.0, unit(low) + 7.0)
+    }
+
     pub(super) fn grid(&self) -> &FrequencyGrid {
         &self.grid
     }

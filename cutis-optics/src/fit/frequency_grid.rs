@@ -21,22 +21,22 @@ const SCALE_OCTAVES: i32 = 60;
 /// Nodes in k and what each one counts.
 pub(super) struct FrequencyGrid {
     k_per_mm: Vec<f64>,
-    k_half_per_mm: f64,
+    k_half_range_per_mm: (f64, f64),
 }
 
 impl FrequencyGrid {
     /// A grid that resolves all of `profiles`.
     pub(super) fn covering(profiles: &[&dyn Profile]) -> Result<Self, FitError> {
-        let (mut low, mut high, mut ln_half) = (f64::INFINITY, 0.0_f64, 0.0);
+        let (mut high, mut range) = (0.0_f64, (f64::INFINITY, 0.0_f64));
         for profile in profiles {
             let half = half_frequency_per_mm(*profile)?;
-            low = low.min(LOW * half);
             high = high.max(HEADROOM * end_frequency_per_mm(*profile, half));
-            ln_half += half.ln() / profiles.len() as f64;
+            range = (range.0.min(half), range.1.max(half));
         }
+        let low = LOW * range.0;
         let count = ((high / low).ln() / STEP).ceil() as usize;
         let k_per_mm = (0..=count).map(|i| low * (STEP * i as f64).exp()).collect();
-        Ok(Self { k_per_mm, k_half_per_mm: ln_half.exp() })
+        Ok(Self { k_per_mm, k_half_range_per_mm: range })
     }
 
     /// Frequencies, growing, 1/mm.
@@ -49,9 +49,9 @@ impl FrequencyGrid {
         self.k_per_mm.len()
     }
 
-    /// Frequency at which the profiles have fallen to half (geometric mean over them): the scale for starting values.
-    pub(super) fn k_half_per_mm(&self) -> f64 {
-        self.k_half_per_mm
+    /// Lowest and highest frequency at which a profile has fallen to half: the scale for starting values.
+    pub(super) fn k_half_range_per_mm(&self) -> (f64, f64) {
+        self.k_half_range_per_mm
     }
 
     /// Square root of the quadrature weight at a node: sqrt(k · k dt), so that sums of squares are the integral.
@@ -126,7 +126,8 @@ mod tests {
                 .map(|&k| grid.root_weight(k).powi(2) * ga.spectrum(k) * gb.spectrum(k))
                 .sum();
             // The part below the grid, (1e-5)²/2 of 1/(a+b) times (a+b), is the largest error; plus 150 roundings.
-            let tolerance = 0.5e-10 * (a + b) * grid.k_half_per_mm().powi(2) * 1.2 + 150.0 * f64::EPSILON;
+            let tolerance =
+                0.5e-10 * (a + b) * grid.k_half_range_per_mm().1.powi(2) * 1.2 + 150.0 * f64::EPSILON;
             assert!((ours * (a + b) - 1.0).abs() < tolerance, "{a} {b}: {}", ours * (a + b) - 1.0);
         }
     }

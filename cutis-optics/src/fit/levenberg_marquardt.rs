@@ -10,6 +10,10 @@ use nalgebra::{DMatrix, DVector};
 const STEPS_MAX: usize = 300;
 /// Stop when a step promises less than this part of the cost: the error itself is then right to half of it.
 const GAIN_MIN: f64 = 1e-9;
+/// A small gain expected means "arrived" only where damping does not hold the step back.
+const DAMPING_CALM: f64 = 1e-2;
+/// Stop when ln v would move by less: the cost is quadratic around a minimum, so this is 1e-14 of it.
+const STEP_MIN: f64 = 1e-7;
 /// First damping, of the largest curvature.
 const DAMPING_FIRST: f64 = 1e-3;
 /// Longest step of one ln v: a factor e in the variance; beyond, the quadratic model is a fairy tale.
@@ -23,7 +27,7 @@ pub(super) fn descend(problem: &Problem, start: Solution) -> Solution {
     for _ in 0..STEPS_MAX {
         let Some(step) = model.step(damping) else { break };
         let expected = model.gain(&step);
-        if expected <= GAIN_MIN * here.cost {
+        if step.amax() < STEP_MIN || (damping < DAMPING_CALM && expected <= GAIN_MIN * here.cost) {
             break;
         }
         let there = problem.solve(&moved(problem, &here.ln_variances, &step), here.rule);
@@ -53,7 +57,7 @@ struct Model {
 impl Model {
     fn new(problem: &Problem, at: &Solution) -> Self {
         let jacobian = problem.jacobian(at);
-        let gradient = jacobian.tr_mul(&problem.residual(at));
+        let gradient = problem.gradient(at);
         Self { gradient, curvature: jacobian.tr_mul(&jacobian) }
     }
 

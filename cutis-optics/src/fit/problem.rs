@@ -10,9 +10,10 @@ use super::weights::{LeastSquares, SignRule, solve};
 use crate::Profile;
 use nalgebra::{DMatrix, DVector};
 
-/// Weight of the energy row against a profile of norm 1. The row is missed by 1/ENERGY² ~ 1e-12, rescaled away at the end;
-/// being the *first* row it costs the Householder QR no accuracy (row-wise stability).
-const ENERGY: f64 = 1e6;
+/// Weight of the energy row against a profile of norm 1. The row is missed by 1/ENERGY² = 1e-6 of what the free fit would
+/// lose, rescaled away at the end. Not more: its square times rounding (1e-10) is the noise in which the sign rule sees
+/// which weights want to grow. Being the *first* row it costs the Householder QR no accuracy (row-wise stability).
+const ENERGY: f64 = 1e3;
 
 /// One or more profiles to be fitted over common variances.
 pub(super) struct Problem {
@@ -77,6 +78,14 @@ impl Problem {
         Ok(Self { grid, method, energy_row, targets })
     }
 
+    /// Smallest and largest ln v (mm²) worth starting from: 0.0025 to 1100 times 1/k_half² where all channels are alike,
+    /// wider by what their scales differ.
+    pub(super) fn start_range_ln_mm2(&self) -> (f64, f64) {
+        let unit = |k: f64| -2.0 * k.ln();
+        let (low, high) = self.grid.k_half_range_per_mm();
+        (unit(high) - 6.0, unit(low) + 7.0)
+    }
+
     pub(super) fn grid(&self) -> &FrequencyGrid {
         &self.grid
     }
@@ -128,6 +137,19 @@ impl Problem {
             }
         }
         jacobian
+    }
+
+    /// Half the gradient of the cost by ln v. The weights are optimal, so their own change counts for nothing (envelope
+    /// theorem) and -a'·r w is left; free of the cancellation in the Jacobian times the residual.
+    pub(super) fn gradient(&self, solution: &Solution) -> DVector<f64> {
+        let slopes = self.design_slopes(solution);
+        let mut gradient = DVector::zeros(solution.ln_variances.len());
+        for channel in &solution.channels {
+            let pull = slopes.tr_mul(&channel.residual);
+            let weights = DVector::from_column_slice(&channel.squares.weights);
+            gradient -= pull.component_mul(&weights);
+        }
+        gradient
     }
 
     /// Weights of one channel for the profile itself, in the order of the variances; under [`FitMethod::Energy`] their sum

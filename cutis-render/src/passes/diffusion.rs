@@ -63,6 +63,10 @@ const COARSE_DEVIATION_TEXELS: f32 = 3.0;
 const MIN_SIZE: usize = 64;
 /// A step may at most quadruple the variance (section 5.1 of the paper): ripples of exp(-2 pi²/3) = 0.14 %.
 const MAX_RATIO: f32 = 4.0;
+/// Only triple it while the light is spread over less than [`FINE_TEXEL2`], where interpolation adds to the ripples.
+const FINE_RATIO: f32 = 3.0;
+/// Variance in texel² below which steps are finer: two texels of deviation.
+const FINE_TEXEL2: f32 = 4.0;
 /// Largest first step from raw texels, texel²: the taps then lie one texel apart.
 const FIRST_STEP_TEXEL2: f32 = 1.1;
 /// Mean variance that bilinear reads add, texel²: f(1-f) over all f.
@@ -143,9 +147,10 @@ impl State {
 
     /// Variance to go to next on the way from `reached` to `wanted`, so that the taps never skip texels that matter.
     fn next_step_mm2(&self, reached_mm2: f32, wanted_mm2: f32) -> f32 {
-        let first_mm2 = FIRST_STEP_TEXEL2 * self.small_mm * self.small_mm;
+        let texel2_mm2 = self.small_mm * self.small_mm;
+        let ratio = if reached_mm2 < FINE_TEXEL2 * texel2_mm2 { FINE_RATIO } else { MAX_RATIO };
         // 1 % of slack, so that a kernel made for this rule does not cost a step more.
-        let most_mm2 = (MAX_RATIO * reached_mm2).max(reached_mm2 + first_mm2);
+        let most_mm2 = (ratio * reached_mm2).max(reached_mm2 + FIRST_STEP_TEXEL2 * texel2_mm2);
         if wanted_mm2 <= 1.01 * most_mm2 { wanted_mm2 } else { most_mm2 }
     }
 

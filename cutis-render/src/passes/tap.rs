@@ -20,6 +20,8 @@ const MAX_SPACING: f64 = 64.0;
 const SPACINGS: usize = 4096;
 /// Entries of the table of discrete variances, over variances from 0 to [`NARROW_TEXEL2`].
 const VARIANCES: usize = 512;
+/// Variance in texel² up to which seven cells hold the Gaussian: 1 in 600 of its energy lies beyond them.
+const WIDEST_CELLS_TEXEL2: f64 = 1.25;
 /// Variance in texel² above which the discrete variance is v + 1/12 to 1e-6: its error falls as exp(-2 pi² v).
 const NARROW_TEXEL2: f64 = 1.0;
 
@@ -30,6 +32,10 @@ pub struct Taps {
     spacing: Vec<f32>,
     max_deviation: f32,
     narrow: Vec<f32>,
+    /// Weights on neighbouring texels for variances up to [`WIDEST_CELLS_TEXEL2`].
+    cells: Vec<[f32; 4]>,
+    /// Variance of the weights at spacing 1.
+    unit_variance: f32,
 }
 
 /// The one kernel of this crate.
@@ -37,9 +43,7 @@ pub static TAPS: LazyLock<Taps> = LazyLock::new(Taps::new);
 
 impl Taps {
     fn new() -> Self {
-        let cells: [f64; 4] = std::array::from_fn(|j| cell(j as f64, 1.0));
-        let total = cells[0] + 2.0 * (cells[1] + cells[2] + cells[3]);
-        let weights = cells.map(|w| w / total);
+        let weights = cell_weights(1.0);
         let max_deviation = variance_at(&weights, MAX_SPACING).sqrt();
         let spacing = (0..SPACINGS)
             .map(|i| spacing_for(&weights, (i as f64 / (SPACINGS - 1) as f64 * max_deviation).powi(2)) as f32)
@@ -47,10 +51,44 @@ impl Taps {
         let narrow = (0..VARIANCES)
             .map(|i| discrete_variance_texel2(i as f64 / (VARIANCES - 1) as f64 * NARROW_TEXEL2) as f32)
             .collect();
-        Self { weights: weights.map(|w| w as f32), spacing, max_deviation: max_deviation as f32, narrow }
+        let cells = (0..VARIANCES)
+            .map(|i| {
+                cell_weights((i as f64 / (VARIANCES - 1) as f64 * WIDEST_CELLS_TEXEL2).sqrt())
+                    .map(|w| w as f32)
+            })
+            .collect();
+        Self {
+            weights: weights.map(|w| w as f32),
+            spacing,
+            max_deviation: max_deviation as f32,
+            narrow,
+            cells,
+            unit_variance: weights.iter().zip(0..).map(|(w, k)| 2.0 * w * f64::from(k * k)).sum::<f64>()
+                as f32,
+        }
     }
 
-    /// Spacing in texels at which the taps have this variance in texel².
+    /// Largest variance that [`Taps::cells`] covers, texel².
+    pub fn widest_cells(&self) -> f32 {
+        WIDEST_CELLS_TEXEL2 as f32
+    }
+
+    /// Weights on the texel itself and its neighbours at one, two and three texels: a Gaussian of this variance in
+    /// texel², integrated over each texel.
+    pub fn cells(&self, variance_texel2: f32) -> [f32; 4] {
+        let x = (variance_texel2 / WIDEST_CELLS_TEXEL2 as f32 * (VARIANCES - 1) as f32).max(0.0);
+        let i = (x as usize).min(VARIANCES - 2);
+        let f = (x - i as f32).min(1.0);
+        std::array::from_fn(|k| self.cells[i][k] + (self.cells[i + 1][k] - self.cells[i][k]) * f)
+    }
+
+    /// Spacing in texels at which taps read by cubic interpolation have this variance in texel². Cubic interpolation
+    /// is exact for parabolas, so it adds nothing to the variance.
+    pub fn cubic_spacing(&self, variance_texel2: f32) -> f32 {
+        (variance_texel2.max(0.0) / self.unit_variance).sqrt()
+    }
+
+    /// Spacing in texels at which taps read by linear interpolation have this variance in texel².
     pub fn spacing(&self, variance_texel2: f32) -> f32 {
         let x = variance_texel2.max(0.0).sqrt() / self.max_deviation * (SPACINGS - 1) as f32;
         interpolate(&self.spacing, x)
@@ -75,6 +113,13 @@ fn interpolate(table: &[f32], x: f32) -> f32 {
 fn cell(x: f64, sigma: f64) -> f64 {
     let upper_tail = |x: f64| 0.5 * libm::erfc(x / sigma * FRAC_1_SQRT_2);
     upper_tail(x - 0.5) - upper_tail(x + 0.5)
+}
+
+/// A Gaussian integrated over the unit cells around 0, 1, 2 and 3, scaled so that all seven cells sum to 1.
+fn cell_weights(sigma: f64) -> [f64; 4] {
+    let cells: [f64; 4] = std::array::from_fn(|j| cell(j as f64, sigma.max(1e-6)));
+    let total = cells[0] + 2.0 * (cells[1] + cells[2] + cells[3]);
+    cells.map(|w| w / total)
 }
 
 /// Variance of the seven taps at a spacing, linear interpolation included: p² + f(1-f) is p² interpolated linearly

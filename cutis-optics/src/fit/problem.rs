@@ -19,13 +19,14 @@ const ENERGY: f64 = 1e3;
 pub(super) struct Problem {
     grid: FrequencyGrid,
     method: FitMethod,
-    energy_row: f64,
     targets: Vec<Target>,
 }
 
 struct Target {
     /// The profile at the nodes over its norm, below the energy row.
     b: DVector<f64>,
+    /// Entry of every column in the energy row; the channels differ, as their norms do.
+    energy_row: f64,
     norm: f64,
     total: f64,
 }
@@ -62,20 +63,8 @@ impl Solution {
 impl Problem {
     pub(super) fn new(profiles: &[&dyn Profile], method: FitMethod) -> Result<Self, FitError> {
         let grid = FrequencyGrid::covering(profiles)?;
-        let norms: Vec<f64> = profiles.iter().map(|p| grid.norm(|k| p.spectrum(k))).collect();
-        let per_channel = profiles.iter().zip(&norms).map(|(p, norm)| ENERGY * norm / p.total());
-        let energy_row = match method {
-            FitMethod::Optimal => 0.0,
-            // All channels share the columns: take the largest, so that each one weighs at least ENERGY.
-            FitMethod::Energy => per_channel.fold(0.0, f64::max),
-        };
-        let target = |(p, &norm): (&&dyn Profile, &f64)| Target {
-            b: with_first_row(energy_row * p.total() / norm, &grid, |k| p.spectrum(k) / norm),
-            norm,
-            total: p.total(),
-        };
-        let targets = profiles.iter().zip(&norms).map(target).collect();
-        Ok(Self { grid, method, energy_row, targets })
+        let targets = profiles.iter().map(|p| Target::new(*p, &grid, method)).collect();
+        Ok(Self { grid, method, targets })
     }
 
     /// Smallest and largest ln v (mm²) worth starting from: 0.0025 to 1100 times 1/k_half² where all channels are alike,
@@ -102,8 +91,10 @@ impl Problem {
     pub(super) fn solve(&self, ln_variances: &[f64], rule: SignRule) -> Option<Solution> {
         let design = self.design(ln_variances);
         let channel = |target: &Target| {
-            let squares = solve(&design, &target.b, rule)?;
-            let residual = &target.b - &design * DVector::from_column_slice(&squares.weights);
+            let mut columns = design.clone();
+            columns.row_mut(0).fill(target.energy_row);
+            let squares = solve(&columns, &target.b, rule)?;
+            let residual = &target.b - columns * DVector::from_column_slice(&squares.weights);
             Some(Channel { squares, residual })
         };
         let channels = self.targets.iter().map(channel).collect::<Option<Vec<_>>>()?;
@@ -160,24 +151,36 @@ impl Problem {
         self.grid.len() + 1
     }
 
+    /// One column per variance; the energy row, still empty, on top.
     fn design(&self, ln_variances: &[f64]) -> DMatrix<f64> {
         let column = |ln_v: &f64| {
             let v = ln_v.exp();
-            with_first_row(self.energy_row, &self.grid, |k| (-0.5 * v * k * k).exp())
+            with_first_row(0.0, &self.grid, |k| (-0.5 * v * k * k).exp())
         };
         DMatrix::from_columns(&ln_variances.iter().map(column).collect::<Vec<_>>())
     }
 
-    /// d/d(ln v) of each column: -v k²/2 times the column; nothing in the energy row.
+    /// d/d(ln v) of each column: -v k²/2 times the column; the energy row does not change.
     fn design_slopes(&self, solution: &Solution) -> DMatrix<f64> {
         let mut slopes = solution.design.clone();
         for (mut column, v) in slopes.column_iter_mut().zip(solution.variances_mm2()) {
-            column[0] = 0.0;
             for (entry, k) in column.iter_mut().skip(1).zip(self.grid.k_per_mm()) {
                 *entry *= -0.5 * v * k * k;
             }
         }
         slopes
+    }
+}
+
+impl Target {
+    fn new(profile: &dyn Profile, grid: &FrequencyGrid, method: FitMethod) -> Self {
+        let (norm, total) = (grid.norm(|k| profile.spectrum(k)), profile.total());
+        let energy_row = match method {
+            FitMethod::Optimal => 0.0,
+            FitMethod::Energy => ENERGY * norm / total,
+        };
+        let b = with_first_row(energy_row * total / norm, grid, |k| profile.spectrum(k) / norm);
+        Self { b, energy_row, norm, total }
     }
 }
 

@@ -10,9 +10,9 @@ use super::problem::{Problem, Solution};
 use super::weights::SignRule;
 use core::cmp::Ordering;
 
-/// Sequences run to the end. Over the 36 measured profiles the first one leads to the global minimum already; the others
-/// are there for profiles not foreseen.
-const RUNS: usize = 3;
+/// Sequences run to the end. Over the 36 measured profiles, with 4, 6 and 8 terms, the first one leads to the global minimum
+/// already; the second is for profiles not foreseen.
+const RUNS: usize = 2;
 /// First variances tried, above the least ln v worth trying.
 const LN_FIRST: [f64; 6] = [0.0, 1.1, 2.2, 3.3, 4.4, 5.5];
 /// Last variances tried, below the largest.
@@ -57,4 +57,46 @@ fn sequences(problem: &Problem, gaussians: usize) -> Vec<Vec<f64>> {
         (0..gaussians).map(|i| low + first + (high - last - low - first) * place(i)).collect::<Vec<_>>()
     };
     LN_FIRST.iter().flat_map(|&first| LN_LAST.iter().map(move |&last| sequence(first, last))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+    use super::*;
+    use crate::presets::measured_media::MEASURED_MEDIA;
+    use crate::{Dipole, FitMethod};
+
+    /// The obvious global search: many runs from scattered starts, without the screening and without growing.
+    fn best_of_scattered_starts(problem: &Problem, gaussians: usize, runs: u64) -> f64 {
+        let (low, high) = problem.start_range_ln_mm2();
+        // Multiplicative congruence of Knuth (MMIX): only the scatter matters.
+        let mut state = 1_u64;
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let mut best = f64::INFINITY;
+        for _ in 0..runs {
+            let ln_variances: Vec<f64> = (0..gaussians).map(|_| low + (high - low) * uniform()).collect();
+            if let Some(start) = problem.solve(&ln_variances, problem.sign_rule()) {
+                best = best.min(descend(problem, start).cost);
+            }
+        }
+        best
+    }
+
+    #[test]
+    fn scattered_starts_find_nothing_better() {
+        for (name, media) in MEASURED_MEDIA {
+            let d = media.map(|m| Dipole::new(&m).unwrap());
+            let alone = Problem::new(&[&d[1]], FitMethod::Optimal).unwrap();
+            let joint = Problem::new(&[&d[0], &d[1], &d[2]], FitMethod::Energy).unwrap();
+            for (problem, gaussians) in [(alone, 4), (joint, 6)] {
+                let ours = best_solution(&problem, gaussians).unwrap().cost;
+                let theirs = best_of_scattered_starts(&problem, gaussians, 20);
+                // Runs that end in one minimum stop within 1e-9 of it; 1e-6 leaves room for slow ones.
+                assert!(ours < theirs * (1.0 + 1e-6), "{name} {gaussians}: {ours:e} {theirs:e}");
+            }
+        }
+    }
 }

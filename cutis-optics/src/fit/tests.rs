@@ -3,6 +3,7 @@ use super::*;
 use crate::oracle::simpson;
 use crate::presets::measured_media::MEASURED_MEDIA;
 use crate::{Dipole, Medium};
+use proptest::prelude::*;
 
 fn dipole(sigma_a: f64, sigma_s: f64, n: f64) -> Dipole {
     Dipole::new(&Medium::new(sigma_a, sigma_s, n).unwrap()).unwrap()
@@ -91,6 +92,21 @@ fn joint_fit_keeps_every_total_and_shares_variances() {
 }
 
 #[test]
+fn joint_fit_improves_with_every_two_gaussians() {
+    for (name, channels) in MEASURED_MEDIA {
+        let d = channels.map(|m| Dipole::new(&m).unwrap());
+        let worst = |count| {
+            let errors = fit_rgb([&d[0], &d[1], &d[2]], count).unwrap().relative_rms_power_error;
+            errors.into_iter().fold(0.0, f64::max)
+        };
+        let errors = [2, 4, 6, 8].map(worst);
+        // Seen: two more terms are worth a factor of 2.9 to 11. A fit stuck in a poor minimum gains less, or loses.
+        assert!(errors.windows(2).all(|w| w[1] < 0.5 * w[0]), "{name} {errors:?}");
+        assert!(errors[2] < 0.0095, "{name}: the default of six must stay below one percent, got {errors:?}");
+    }
+}
+
+#[test]
 fn joint_fit_of_equal_channels_is_the_single_fit() {
     let skin = dipole(0.17, 0.88, 1.3);
     let (joint, alone) = (fit_rgb([&skin; 3], 5).unwrap(), fit(&skin, 5, FitMethod::Energy).unwrap());
@@ -112,4 +128,35 @@ fn impossible_requests_are_refused_in_words() {
     assert!(matches!(rgb_kernel(&[good, bad, good], 6), Err(FitError::Medium { channel: 1, .. })));
     let empty = GaussianSum::default();
     assert!(matches!(fit(&empty, 4, FitMethod::Optimal), Err(FitError::Total { .. })));
+}
+
+/// Found by chance: scales sixteen decades apart once let rounding through as a negative weight, and one channel's energy
+/// row drowned another's shape.
+#[test]
+fn channels_of_wildly_different_scale_all_get_a_shape() {
+    let media =
+        [(2e8, 2800.0), (0.0099, 1.2e-7), (3.1e-4, 4.7e-8)].map(|(a, s)| Medium::new(a, s, 2.7).unwrap());
+    let d = media.map(|m| Dipole::new(&m).unwrap());
+    let f = fit_rgb([&d[0], &d[1], &d[2]], 4).unwrap();
+    assert!(f.kernel.weights.iter().flatten().all(|&w| w >= 0.0), "{:?}", f.kernel);
+    // One Gaussian for a profile of its own misses by about a tenth; with four for three none does worse.
+    assert!(f.relative_rms_power_error.iter().all(|&e| e < 0.15), "{:?}", f.relative_rms_power_error);
+}
+
+proptest! {
+    // A joint fit takes 0.1 s: a few are enough to see that nothing overflows.
+    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_possible_media_get_a_kernel(
+        ln_a in prop::array::uniform3(-40.0..20.7_f64), ln_s in prop::array::uniform3(-20.7..20.7_f64), n in 0.5..3.0_f64,
+    ) {
+        let media = [0, 1, 2].map(|c| Medium::new(ln_a[c].exp(), ln_s[c].exp(), n).unwrap());
+        let kernel = rgb_kernel(&media, 4).unwrap();
+        for (medium, total) in media.iter().zip(kernel.totals()) {
+            let exact = Dipole::new(medium).unwrap().total();
+            prop_assert!((total / exact - 1.0).abs() < 16.0 * f64::EPSILON);
+        }
+        prop_assert!(kernel.rows().all(|(v, w)| v.is_finite() && v > 0.0 && w.iter().all(|w| *w >= 0.0)));
+    }
 }

@@ -167,9 +167,10 @@ mod tests {
     fn measured_kernels_carry_the_total_of_the_dipole() {
         let preset = find("skin1").unwrap();
         let kernel = preset.kernel(6).unwrap();
-        // R_d of the three channels from an independent table, six decimals.
+        // R_d of the three channels from an independent table, made with a boundary factor A that differs by 2.5e-4; R_d
+        // follows with 0.37 of that at most. Half a unit of the sixth decimal is the table's rounding.
         for (total, table) in kernel.totals().iter().zip([0.435956, 0.227331, 0.130999]) {
-            assert!((total - table).abs() < 6e-7, "{total} against {table}");
+            assert!((total - table).abs() < 0.37 * 2.5e-4 * table + 5e-7, "{total} against {table}");
         }
     }
 }

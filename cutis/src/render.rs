@@ -6,7 +6,7 @@ use crate::progress::Bar;
 use crate::report::Report;
 use crate::{Outcome, talk};
 use cutis_render::film::{self, Film, Written};
-use cutis_render::{CpuRenderer, Frame, PassTime, Renderer};
+use cutis_render::{Aov, CpuRenderer, Frame, PassTime, Renderer};
 use cutis_scene::Scene;
 use miette::{IntoDiagnostic, Result, miette};
 use std::time::Instant;
@@ -70,13 +70,22 @@ fn warnings(job: &Job, scene: &Scene, frame: &Frame, written: &Written) -> Vec<S
     let broken = (written.broken_pixels > 0).then(|| {
         format!("{} pixels hold no finite number: a fault of cutis worth reporting", written.broken_pixels)
     });
+    let missing = missing_layers(job, frame);
     let mut all: Vec<String> = Vec::new();
-    for warning in job.warnings.iter().chain(&scene.warnings).chain(&frame.warnings).chain(&broken) {
+    let told = job.warnings.iter().chain(&scene.warnings).chain(&frame.warnings);
+    for warning in told.chain(&missing).chain(&broken) {
         if !all.contains(warning) {
             all.push(warning.clone());
         }
     }
     all
+}
+
+/// Layers that were wished for and are not there: some exist only in the picture, some only with enough Gaussians.
+fn missing_layers(job: &Job, frame: &Frame) -> Vec<String> {
+    let names = job.settings.aovs.iter().map(Aov::to_string);
+    let missing = names.filter(|name| frame.layers.iter().all(|layer| layer.name != *name));
+    missing.map(|name| format!("there is no layer '{name}' of this material in this --aov-space")).collect()
 }
 
 /// Says where layers beside the picture went, and what their black and white mean.

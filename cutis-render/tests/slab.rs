@@ -1,6 +1,6 @@
 //! A slab lit from behind against equation 16 by quadrature.
 
-use cutis_optics::presets;
+use cutis_optics::{Profile, presets};
 use cutis_render::technique::texture_space::LitScene;
 use cutis_render::{Aov, Settings, Silent};
 use cutis_scene::{Camera, Light, Material, Mesh, Object, ScalarMap, Scene};

@@ -1,0 +1,216 @@
+//! The words of the command line and what they mean, as plain values. What they may be is checked in
+//! [`crate::job`].
+
+use crate::talk;
+use clap::builder::PossibleValuesParser;
+use clap::error::ErrorKind;
+use clap::{Args, Parser, Subcommand};
+use cutis_render::film::ToneMapper;
+use cutis_render::{Aov, AovSpace, Diffusion, Settings, TechniqueName};
+use std::fmt::Display;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Techniques that can be chosen.
+pub const TECHNIQUES: [TechniqueName; 1] = [TechniqueName::TextureSpace];
+
+/// Diffusion operators that can be chosen.
+pub const DIFFUSIONS: [Diffusion; 2] = [Diffusion::None, Diffusion::Separable];
+
+/// Names of [`AovSpace`].
+pub const AOV_SPACES: [(&str, AovSpace); 2] =
+    [("picture", AovSpace::Picture), ("texture", AovSpace::Texture)];
+
+/// Renders skin and other translucent materials.
+#[derive(Debug, Parser)]
+#[command(name = "cutis", version, about, arg_required_else_help = true, max_term_width = 110)]
+pub struct Cli {
+    /// Say more on stderr: -v what is done, -vv how
+    #[arg(short, long, global = true, action = clap::ArgAction::Count)]
+    pub verbose: u8,
+    /// What to do
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What the program can do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a picture of a scene, or of the built-in head
+    Render(Box<RenderArgs>),
+    /// List the materials, heads, environments and techniques that ship inside
+    Presets(PresetsArgs),
+    /// Print a completion script for a shell
+    Completions(CompletionsArgs),
+}
+
+/// Arguments of `cutis render`.
+#[derive(Debug, Args)]
+pub struct RenderArgs {
+    /// Scene to render: .toml, .glb, .gltf or .obj; left out: the built-in head
+    pub scene: Option<PathBuf>,
+    /// Picture to write: .png (developed, sRGB) or .exr (radiance as rendered, layers inside)
+    #[arg(short, long, value_name = "FILE", default_value = "cutis.png")]
+    pub output: PathBuf,
+    /// Method that draws the picture
+    #[arg(long, value_name = "NAME", default_value_t = Settings::default().technique.to_string(), value_parser = names(TECHNIQUES))]
+    pub technique: String,
+    /// How light spreads under the surface; none: the surface is opaque
+    #[arg(long, value_name = "NAME", default_value_t = Settings::default().diffusion.to_string(), value_parser = names(DIFFUSIONS))]
+    pub diffusion: String,
+    /// Where it is computed; auto: the best there is
+    #[arg(long, value_name = "NAME", default_value = "auto", value_parser = names(["auto", "cpu", "gpu"]))]
+    pub backend: String,
+    /// Width and height of the picture [pixels, 1x1 to 16384x16384]
+    #[arg(long, value_name = "WIDTHxHEIGHT", default_value_t = default_size())]
+    pub size: String,
+    /// Samples per pixel, rounded up to a square number [1 to 4096]
+    #[arg(long, value_name = "N", default_value_t = Settings::default().samples_per_pixel)]
+    pub samples: u32,
+    /// Seed of every random choice: the same seed gives the same bytes [0 to 2^64 - 1]
+    #[arg(long, value_name = "N", default_value_t = Settings::default().seed)]
+    pub seed: u64,
+    /// Layer to write beside the picture; may be given several times. In an EXR file as a named layer, otherwise as
+    /// NAME.LAYER.png beside the picture
+    #[arg(long, value_name = "LAYER", value_parser = names(Aov::all()))]
+    pub aov: Vec<String>,
+    /// Layers as the camera sees them, or as textures of the first object
+    #[arg(long, value_name = "SPACE", default_value = "picture", value_parser = names(AOV_SPACES.map(|(name, _)| name)))]
+    pub aov_space: String,
+    /// Print one JSON object on stdout, and nothing else
+    #[arg(long)]
+    pub json: bool,
+    /// Width and height of the largest object's irradiance texture [texels, 16 to 16384]
+    #[arg(long, value_name = "N", default_value_t = Settings::default().irradiance_size)]
+    pub irradiance_size: u32,
+    /// Gaussians in the kernel of a material given by its coefficients [1 to 16]
+    #[arg(long, value_name = "N", default_value_t = Settings::default().gaussians)]
+    pub gaussians: usize,
+    /// Shadow rays per texel towards lights with an extent [1 to 1024]
+    #[arg(long, value_name = "N", default_value_t = Settings::default().shadow_samples)]
+    pub shadow_samples: u32,
+    /// Ambient-occlusion rays per texel of the occlusion map [1 to 4096]
+    #[arg(long, value_name = "N", default_value_t = Settings::default().ambient_samples)]
+    pub ambient_samples: u32,
+    /// Light of the picture, on top of the scene camera's own exposure; not for EXR [EV (stops), -32 to 32, default 0]
+    #[arg(long, value_name = "EV", allow_negative_numbers = true)]
+    pub exposure_ev: Option<f32>,
+    /// Curve from scene light to screen light; not for EXR [default: agx]
+    #[arg(long, value_name = "NAME", value_parser = names(ToneMapper::ALL))]
+    pub tone_mapper: Option<String>,
+    /// Share of the light that glows around bright things; not for EXR [fraction, 0 to 1, default 0.04]
+    #[arg(long, value_name = "FRACTION", allow_negative_numbers = true)]
+    pub bloom: Option<f32>,
+    /// Bits per channel: PNG 8 or 16 [default 8], EXR 16 or 32 [default 16]
+    #[arg(long, value_name = "BITS")]
+    pub bits: Option<u32>,
+    /// Threads to work with [1 to 1024, default: one per processor]
+    #[arg(long, value_name = "N")]
+    pub threads: Option<usize>,
+    /// Length of the mesh file's unit [mm, above 0, default: what the file says; 1000 for glTF]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub millimetres_per_unit: Option<f32>,
+    /// Diffuse colour texture for all objects, instead of their own
+    #[arg(long, value_name = "FILE")]
+    pub albedo: Option<PathBuf>,
+    /// Tangent-space normal map for all objects, instead of their own
+    #[arg(long, value_name = "FILE")]
+    pub normal: Option<PathBuf>,
+    /// Map of specular intensity for all objects, instead of their own
+    #[arg(long, value_name = "FILE")]
+    pub specular: Option<PathBuf>,
+    /// Latitude-longitude map that lights the scene from all around (.exr or .hdr), instead of its own
+    #[arg(long, value_name = "FILE")]
+    pub environment: Option<PathBuf>,
+    /// Triangles of the built-in head, about [1000 to 4000000, default 200000]
+    #[arg(long, value_name = "N")]
+    pub triangles: Option<usize>,
+}
+
+/// Arguments of `cutis presets`.
+#[derive(Debug, Args)]
+pub struct PresetsArgs {
+    /// Print one JSON object, with all numbers [coefficients in 1/mm, variances in mm²]
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `cutis completions`.
+#[derive(Debug, Args)]
+pub struct CompletionsArgs {
+    /// The shell
+    pub shell: clap_complete::Shell,
+}
+
+/// Reads the command line. The error is the exit code, after the answer was printed.
+pub fn parse() -> Result<Cli, ExitCode> {
+    Cli::try_parse().map_err(|error| match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+            // A pipe that closed before it read the help is no error.
+            let _ = talk::say(error.render().to_string().trim_end());
+            ExitCode::SUCCESS
+        }
+        ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            talk::tell(error.render().to_string().trim_end());
+            ExitCode::from(2)
+        }
+        _ => {
+            talk::complain(&miette::miette!(
+                help = "cutis --help and cutis render --help list what there is",
+                "{}",
+                one_line(&error)
+            ));
+            ExitCode::from(2)
+        }
+    })
+}
+
+/// The parser's complaint without its usage and hints, on one line.
+fn one_line(error: &clap::Error) -> String {
+    let text = error.render().to_string();
+    let told = text.lines().take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
+    let words: Vec<_> = told.flat_map(str::split_whitespace).collect();
+    let line = words.join(" ");
+    line.strip_prefix("error: ").map_or(line.clone(), str::to_owned)
+}
+
+/// A parser of the names of some values.
+fn names<T: Display>(values: impl IntoIterator<Item = T>) -> PossibleValuesParser {
+    PossibleValuesParser::new(values.into_iter().map(|value| value.to_string()))
+}
+
+fn default_size() -> String {
+    let settings = Settings::default();
+    format!("{}x{}", settings.width, settings.height)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+    use cutis_render::film::Film;
+
+    #[test]
+    fn the_definition_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn defaults_in_the_help_are_those_of_the_film() {
+        let film = Film::default();
+        let help = Cli::command().find_subcommand("render").map(|c| c.clone().render_long_help().to_string());
+        let help = help.expect("there is a render command");
+        let strength = film.bloom.map_or(0.0, |bloom| bloom.strength);
+        assert!(help.contains(&format!("0 to 1, default {strength}")), "{help}");
+        assert!(help.contains(&format!("[default: {}]", film.tone_mapper)), "{help}");
+        assert!(help.contains(&format!("-32 to 32, default {}", film.exposure_ev)), "{help}");
+    }
+
+    #[test]
+    fn complaints_fit_on_a_line() {
+        let error = Cli::try_parse_from(["cutis", "render", "--technique", "raytrace"]).expect_err("unknown");
+        let line = one_line(&error);
+        assert!(line.starts_with("invalid value 'raytrace' for '--technique <NAME>'"), "{line}");
+        assert!(line.contains("texture-space") && !line.contains('\n'), "{line}");
+    }
+}

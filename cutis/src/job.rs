@@ -1,0 +1,193 @@
+//! A run that can begin: every value of the command line checked, every file that must be there looked for.
+
+use crate::cli::{AOV_SPACES, DIFFUSIONS, RenderArgs, TECHNIQUES};
+use crate::scene_source::SceneSource;
+use cutis_render::film::{Bloom, Film, Format, check_output, layer_path};
+use cutis_render::{Aov, Settings};
+use cutis_scene::ReadOptions;
+use miette::{Result, miette};
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+
+/// Triangles of the built-in head, if nobody says otherwise.
+const HEAD_TRIANGLES: usize = 200_000;
+
+/// Everything `cutis render` needs to know.
+#[derive(Debug, Clone)]
+pub struct Job {
+    /// What is rendered.
+    pub source: SceneSource,
+    /// How it is rendered.
+    pub settings: Settings,
+    /// How it is developed; the exposure is added to that of the scene's camera.
+    pub film: Film,
+    /// Where it goes.
+    pub output: PathBuf,
+    /// In which format.
+    pub format: Format,
+    /// Threads to work with; none: one per processor.
+    pub threads: Option<usize>,
+    /// Whether the result is told as JSON.
+    pub json: bool,
+    /// Wishes that have no effect, in words.
+    pub warnings: Vec<String>,
+}
+
+impl Job {
+    /// Checks the arguments.
+    pub fn new(args: &RenderArgs) -> Result<Self> {
+        check_backend(&args.backend)?;
+        let settings = settings(args)?;
+        let film = film(args)?;
+        let threads = args.threads.map(|n| in_range("--threads", n, 1..=1024, "1 to 1024")).transpose()?;
+        let source = source(args)?;
+        let format = check_outputs(args, &settings)?;
+        let (output, json, warnings) = (args.output.clone(), args.json, idle_wishes(args, format));
+        Ok(Self { source, settings, film, output, format, threads, json, warnings })
+    }
+}
+
+fn check_backend(name: &str) -> Result<()> {
+    if name == "gpu" {
+        return Err(miette!(
+            help = "leave --backend out, or say cpu",
+            "this build of cutis has no GPU backend"
+        ));
+    }
+    Ok(())
+}
+
+fn settings(args: &RenderArgs) -> Result<Settings> {
+    let (width, height) = size(&args.size)?;
+    let mut aovs: Vec<Aov> = Vec::new();
+    for name in &args.aov {
+        let aov = name.parse().map_err(|reason| miette!("--aov: {reason}"))?;
+        if !aovs.contains(&aov) {
+            aovs.push(aov);
+        }
+    }
+    let settings = Settings {
+        technique: named("--technique", &args.technique, TECHNIQUES.map(|t| (t.to_string(), t)))?,
+        diffusion: named("--diffusion", &args.diffusion, DIFFUSIONS.map(|d| (d.to_string(), d)))?,
+        width,
+        height,
+        samples_per_pixel: args.samples,
+        irradiance_size: args.irradiance_size,
+        gaussians: args.gaussians,
+        shadow_samples: args.shadow_samples,
+        ambient_samples: args.ambient_samples,
+        seed: args.seed,
+        aovs,
+        aov_space: named("--aov-space", &args.aov_space, AOV_SPACES.map(|(n, s)| (n.to_owned(), s)))?,
+    };
+    settings.check().map_err(refused)?;
+    Ok(settings)
+}
+
+fn film(args: &RenderArgs) -> Result<Film> {
+    let mut film = Film::default();
+    if let Some(exposure_ev) = args.exposure_ev {
+        film.exposure_ev = exposure_ev;
+    }
+    if let Some(name) = &args.tone_mapper {
+        film.tone_mapper = name.parse().map_err(|reason: String| miette!("--tone-mapper: {reason}"))?;
+    }
+    if let Some(strength) = args.bloom {
+        // Not a number is not 0: it stays, for the film to refuse.
+        film.bloom = if strength == 0.0 { None } else { Some(Bloom { strength, ..Bloom::default() }) };
+    }
+    film.check().map_err(refused)?;
+    Ok(film)
+}
+
+fn source(args: &RenderArgs) -> Result<SceneSource> {
+    let millimetres = args.millimetres_per_unit;
+    if millimetres.is_some_and(|mm| !(mm > 0.0 && mm.is_finite())) {
+        return Err(miette!(
+            "--millimetres-per-unit must be above 0 mm, got {}",
+            millimetres.unwrap_or_default()
+        ));
+    }
+    if args.scene.is_some() && args.triangles.is_some() {
+        return Err(miette!("--triangles is for the built-in head; a scene file has the triangles it has"));
+    }
+    let triangles = args.triangles.unwrap_or(HEAD_TRIANGLES);
+    let triangles = in_range("--triangles", triangles, 1000..=4_000_000, "1000 to 4000000")?;
+    let maps = [&args.albedo, &args.normal, &args.specular, &args.environment];
+    maps.into_iter().chain([&args.scene]).flatten().try_for_each(|path| must_exist(path))?;
+    let options = ReadOptions {
+        millimetres_per_unit: millimetres,
+        albedo: args.albedo.clone(),
+        normal: args.normal.clone(),
+        specular: args.specular.clone(),
+        ..ReadOptions::default()
+    };
+    Ok(SceneSource { file: args.scene.clone(), options, environment: args.environment.clone(), triangles })
+}
+
+/// Finds a missing file before the work; the reader says everything else that may be wrong with it.
+fn must_exist(path: &Path) -> Result<()> {
+    if path.exists() || path.to_string_lossy().starts_with("assets:") {
+        return Ok(());
+    }
+    Err(miette!("{}: there is no such file", path.display()))
+}
+
+/// Finds out before the work whether picture and layers can be written.
+fn check_outputs(args: &RenderArgs, settings: &Settings) -> Result<Format> {
+    let format = check_output(&args.output, args.bits).map_err(refused)?;
+    if !format.is_scene_referred() {
+        for aov in &settings.aovs {
+            check_output(&layer_path(&args.output, &aov.to_string()), args.bits).map_err(refused)?;
+        }
+    }
+    Ok(format)
+}
+
+/// Wishes for the film, where the file takes none.
+fn idle_wishes(args: &RenderArgs, format: Format) -> Vec<String> {
+    let wishes = [
+        ("--exposure-ev", args.exposure_ev.is_some()),
+        ("--tone-mapper", args.tone_mapper.is_some()),
+        ("--bloom", args.bloom.is_some()),
+    ];
+    let idle = wishes.into_iter().filter(|(_, given)| *given && format.is_scene_referred());
+    idle.map(|(flag, _)| format!("{flag} has no effect: EXR files hold the radiance as rendered")).collect()
+}
+
+fn size(text: &str) -> Result<(u32, u32)> {
+    let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    sides.ok_or_else(|| miette!("--size must be WIDTHxHEIGHT in pixels, such as 1024x1024, got '{text}'"))
+}
+
+fn named<T: Copy>(flag: &str, name: &str, known: impl IntoIterator<Item = (String, T)>) -> Result<T> {
+    let value = known.into_iter().find_map(|(known, value)| (known == name).then_some(value));
+    value.ok_or_else(|| miette!("{flag}: there is no '{name}'"))
+}
+
+fn in_range(
+    flag: &str,
+    value: usize,
+    allowed: std::ops::RangeInclusive<usize>,
+    range: &str,
+) -> Result<usize> {
+    if allowed.contains(&value) { Ok(value) } else { Err(miette!("{flag} must be {range}, got {value}")) }
+}
+
+/// A library's error is already one line that says what is wrong.
+fn refused(error: impl Display) -> miette::Report {
+    miette!("{error}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read() {
+        assert_eq!(size("640x480").expect("a size"), (640, 480));
+        for bad in ["640", "x", "640x", "-1x5", "640x480x3", "6.4x4", "99999999999x1", ""] {
+            assert!(size(bad).is_err(), "{bad}");
+        }
+    }
+}

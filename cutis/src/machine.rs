@@ -1,0 +1,24 @@
+//! What a run took from the machine.
+
+/// Most memory the program held at once, MiB; none where the system does not tell in a file.
+pub fn peak_memory_mib() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    parse_peak_kib(&status).map(|kib| kib / 1024.0)
+}
+
+/// The line `VmHWM:   123456 kB` of Linux's process status; its "kB" are KiB (proc(5)).
+fn parse_peak_kib(status: &str) -> Option<f64> {
+    let value = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    value.trim().strip_suffix("kB")?.trim().parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_high_water_mark_is_found() {
+        assert_eq!(parse_peak_kib("Name:\tcutis\nVmPeak:\t 9000 kB\nVmHWM:\t    2048 kB\n"), Some(2048.0));
+        assert_eq!(parse_peak_kib("Name:\tcutis\n"), None);
+    }
+}

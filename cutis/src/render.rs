@@ -1,0 +1,98 @@
+//! `cutis render`: reads the scene, draws it, develops it, writes it and says where it is.
+
+use crate::cli::RenderArgs;
+use crate::job::Job;
+use crate::progress::Bar;
+use crate::report::Report;
+use crate::{Outcome, talk};
+use cutis_render::film::{self, Film, Written};
+use cutis_render::{Aov, CpuRenderer, Frame, PassTime, Renderer};
+use cutis_scene::Scene;
+use miette::{IntoDiagnostic, Result, miette};
+use std::time::Instant;
+
+/// Runs the command.
+pub fn run(args: &RenderArgs, verbose: u8) -> Result<Outcome> {
+    let start = Instant::now();
+    let job = Job::new(args)?;
+    choose_threads(job.threads)?;
+    let renderer = CpuRenderer;
+    tracing::info!("backend {}, {}", renderer.backend(), renderer.adapter());
+
+    let (scene, reading) = timed("read", || job.source.load().map_err(|error| miette!("{error}")))?;
+    let frame = draw(&renderer, &scene, &job, verbose)?;
+    let film = Film { exposure_ev: job.film.exposure_ev + scene.camera.exposure_ev, ..job.film };
+    let (written, writing) = timed("write", || {
+        film::write(&job.output, job.format, &frame, &film).map_err(|error| miette!("{error}"))
+    })?;
+
+    let warnings = warnings(&job, &scene, &frame, &written);
+    let passes = passes(reading, &frame, &written, writing);
+    if job.json {
+        let report = Report::new(&job, &renderer, &written, &passes, &warnings, start.elapsed());
+        talk::say(&serde_json::to_string_pretty(&report).into_diagnostic()?)?;
+    } else {
+        talk::say(&written.picture.display().to_string())?;
+    }
+    warnings.iter().for_each(|warning| talk::tell(&format!("warning: {warning}")));
+    tell_layers(&written);
+    Ok(if written.broken_pixels == 0 { Outcome::Done } else { Outcome::CheckFailed })
+}
+
+fn choose_threads(threads: Option<usize>) -> Result<()> {
+    let Some(threads) = threads else { return Ok(()) };
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().into_diagnostic()
+}
+
+fn draw(renderer: &dyn Renderer, scene: &Scene, job: &Job, verbose: u8) -> Result<Frame> {
+    let bar = Bar::new(verbose);
+    let frame = renderer.render(scene, &job.settings, &bar);
+    bar.finish();
+    frame.map_err(|error| miette!("{error}"))
+}
+
+fn timed<T>(name: &str, work: impl FnOnce() -> Result<T>) -> Result<(T, PassTime)> {
+    let start = Instant::now();
+    let value = work()?;
+    Ok((value, PassTime { name: name.to_owned(), time: start.elapsed() }))
+}
+
+/// All passes of the run. The film's are part of the writing, which is told without them.
+fn passes(reading: PassTime, frame: &Frame, written: &Written, mut writing: PassTime) -> Vec<PassTime> {
+    let film = written.passes.iter().map(|pass| pass.time).sum();
+    writing.time = writing.time.saturating_sub(film);
+    let drawn = frame.passes.iter().chain(&written.passes).cloned();
+    std::iter::once(reading).chain(drawn).chain([writing]).collect()
+}
+
+/// Everything worth knowing, each once.
+fn warnings(job: &Job, scene: &Scene, frame: &Frame, written: &Written) -> Vec<String> {
+    let broken = (written.broken_pixels > 0).then(|| {
+        format!("{} pixels hold no finite number: a fault of cutis worth reporting", written.broken_pixels)
+    });
+    let missing = missing_layers(job, frame);
+    let mut all: Vec<String> = Vec::new();
+    let told = job.warnings.iter().chain(&scene.warnings).chain(&frame.warnings);
+    for warning in told.chain(&missing).chain(&broken) {
+        if !all.contains(warning) {
+            all.push(warning.clone());
+        }
+    }
+    all
+}
+
+/// Layers that were wished for and are not there: some exist only in the picture, some only with enough Gaussians.
+fn missing_layers(job: &Job, frame: &Frame) -> Vec<String> {
+    let names = job.settings.aovs.iter().map(Aov::to_string);
+    let missing = names.filter(|name| frame.layers.iter().all(|layer| layer.name != *name));
+    missing.map(|name| format!("there is no layer '{name}' of this material in this --aov-space")).collect()
+}
+
+/// Says where layers beside the picture went, and what their black and white mean.
+fn tell_layers(written: &Written) {
+    for layer in &written.layers {
+        if let Some([black, white]) = layer.black_and_white {
+            talk::tell(&format!("{}: black is {black}, white is {white}", layer.path.display()));
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! Where the scene comes from: a file, or the head that ships inside.
+
+use cutis_scene::head;
+use cutis_scene::studio::{studio_environment, studio_lights};
+use cutis_scene::{
+    Camera, ColourMap, ColourSpace, Environment, NormalMap, NormalSpace, ReadOptions, ScalarMap, Scene,
+    SceneError, Texture, read_image, read_scene,
+};
+use glam::Vec3;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Angle between the upper and the lower edge of a picture of the built-in head, rad: 25°, a portrait lens.
+const HEAD_FOV_RAD: f32 = 0.436_332_3;
+
+/// What is to be read or made.
+#[derive(Debug, Clone)]
+pub struct SceneSource {
+    /// The scene file; none for the built-in head.
+    pub file: Option<PathBuf>,
+    /// What the command line knows better than the file.
+    pub options: ReadOptions,
+    /// Map that takes the place of the scene's environment.
+    pub environment: Option<PathBuf>,
+    /// Triangles of the built-in head, about.
+    pub triangles: usize,
+}
+
+impl SceneSource {
+    /// Reads or makes the scene.
+    pub fn load(&self) -> Result<Scene, SceneError> {
+        let mut scene = match &self.file {
+            Some(path) => read_scene(path, &self.options)?,
+            None => self.built_in_head()?,
+        };
+        if let Some(path) = &self.environment {
+            scene.environment = Some(Environment {
+                map: read(path, ColourSpace::Colour, &mut scene.warnings)?,
+                rotation_rad: 0.0,
+                radiance_scale: Vec3::ONE,
+                visible: true,
+            });
+        }
+        Ok(scene)
+    }
+
+    /// The built-in head in the studio.
+    fn built_in_head(&self) -> Result<Scene, SceneError> {
+        let object = head::built_in(self.triangles);
+        let bounds_mm = object.mesh.bounds_mm().unwrap_or_default();
+        let mut scene = Scene {
+            objects: vec![object],
+            lights: studio_lights(bounds_mm),
+            environment: Some(studio_environment()),
+            camera: Camera::framing(bounds_mm, Vec3::Z, HEAD_FOV_RAD),
+            warnings: Vec::new(),
+        };
+        self.put_on_textures(&mut scene)?;
+        Ok(scene)
+    }
+
+    /// Textures of the command line on the built-in head; for files the reader does it.
+    fn put_on_textures(&self, scene: &mut Scene) -> Result<(), SceneError> {
+        let Scene { objects, warnings, .. } = scene;
+        let ReadOptions { albedo, normal, specular, .. } = &self.options;
+        for material in objects.iter_mut().map(|object| &mut object.material) {
+            if let Some(path) = albedo {
+                let texture = Some(read(path, ColourSpace::Colour, warnings)?);
+                material.albedo = ColourMap { factor: Vec3::ONE, texture };
+            }
+            if let Some(path) = normal {
+                let texture = read(path, ColourSpace::Data, warnings)?;
+                material.normal = Some(NormalMap { texture, space: NormalSpace::Tangent, strength: 1.0 });
+            }
+            if let Some(path) = specular {
+                material.rho_s = ScalarMap::measured_rho_s(read(path, ColourSpace::Data, warnings)?);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn read(path: &Path, space: ColourSpace, warnings: &mut Vec<String>) -> Result<Arc<Texture>, SceneError> {
+    read_image(path, space, warnings).map(Arc::new)
+}

@@ -46,11 +46,13 @@ pub(crate) fn check_mesh(
     if let Some(bad) = mesh.triangles.iter().flatten().find(|&&v| v as usize >= vertices) {
         return fail(format!("a triangle names vertex {bad}, but there are {vertices}"));
     }
-    if let Some(v) = mesh.positions_mm.iter().position(|p| !(p.abs().max_element() <= MAX_COORDINATE_MM)) {
+    if let Some(v) =
+        mesh.positions_mm.iter().position(|p| !p.is_finite() || p.abs().max_element() > MAX_COORDINATE_MM)
+    {
         let p = mesh.positions_mm[v];
         return fail(format!("vertex {v} lies at {p} mm; coordinates must be finite and below 1e9 mm"));
     }
-    if let Some(v) = mesh.uvs.iter().position(|uv| !(uv.abs().max_element() <= MAX_UV)) {
+    if let Some(v) = mesh.uvs.iter().position(|uv| !uv.is_finite() || uv.abs().max_element() > MAX_UV) {
         let uv = mesh.uvs[v];
         return fail(format!(
             "vertex {v} has texture coordinates {uv}; they must be finite and below {MAX_UV}"

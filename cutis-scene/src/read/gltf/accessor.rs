@@ -182,11 +182,14 @@ impl<'a> Accessors<'a> {
         let Checked::Valid(component) = &accessor.component_type else {
             return self.fail(place, "has an unknown componentType".to_owned());
         };
-        let fits = match (accept, component.0) {
-            (Accept::Float | Accept::FloatOrNormalised, ComponentType::F32) => true,
-            (Accept::FloatOrNormalised, ComponentType::U8 | ComponentType::U16) => true,
-            (Accept::Unsigned, ComponentType::U8 | ComponentType::U16 | ComponentType::U32) => true,
-            _ => false,
+        let fits = match accept {
+            Accept::Float => component.0 == ComponentType::F32,
+            Accept::FloatOrNormalised => {
+                matches!(component.0, ComponentType::F32 | ComponentType::U8 | ComponentType::U16)
+            }
+            Accept::Unsigned => {
+                matches!(component.0, ComponentType::U8 | ComponentType::U16 | ComponentType::U32)
+            }
         };
         if !fits {
             return self

@@ -197,6 +197,17 @@ fn morph_targets_come_in_millimetres_with_their_names() {
 }
 
 #[test]
+fn extras_may_be_anything() {
+    let folder = tempfile::tempdir().unwrap();
+    for extras in [json!(7), json!([1, [2]]), json!("text"), json!({ "a": { "extras": 1 } })] {
+        let mut glb = Glb::square();
+        glb.json["extras"] = extras.clone();
+        glb.json["nodes"][0]["extras"] = extras;
+        assert_eq!(read(folder.path(), "extras.glb", glb.bytes()).objects.len(), 1);
+    }
+}
+
+#[test]
 fn primitives_of_one_material_become_one_object() {
     let folder = tempfile::tempdir().unwrap();
     let mut glb = Glb::square();

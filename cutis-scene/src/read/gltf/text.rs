@@ -3,6 +3,7 @@
 use crate::SceneError;
 use gltf::json::Root;
 use serde::Deserialize;
+use serde_json::Value;
 use std::path::Path;
 
 /// Most names that are kept per mesh.
@@ -10,13 +11,36 @@ const MAX_NAMES: usize = 10_000;
 
 /// Parses the document. Nesting deeper than 128 is an error of the parser, so no stack can overflow.
 pub(super) fn parse(json: &[u8], file: &Path) -> Result<Root, SceneError> {
-    serde_json::from_slice(json).map_err(|e| {
-        let place = format!("JSON line {}, column {}", e.line(), e.column());
-        // The library repeats the place at the end of its message.
-        let text = e.to_string();
-        let reason = text.split(" at line ").next().unwrap_or(&text);
-        SceneError::new(file, place, reason)
-    })
+    let first = match serde_json::from_slice(json) {
+        Ok(root) => return Ok(root),
+        Err(error) => error,
+    };
+    // `extras` may hold anything, but the typed JSON only passes over objects.
+    if first.is_data()
+        && let Ok(mut value) = serde_json::from_slice(json)
+    {
+        remove_extras(&mut value);
+        if let Ok(root) = serde_json::from_value(value) {
+            return Ok(root);
+        }
+    }
+    let place = format!("JSON line {}, column {}", first.line(), first.column());
+    // The library repeats the place at the end of its message.
+    let text = first.to_string();
+    let reason = text.split(" at line ").next().unwrap_or(&text);
+    Err(SceneError::new(file, place, reason))
+}
+
+/// Takes the application's own data out of a document. The depth is that of the parser, at most 128.
+fn remove_extras(value: &mut Value) {
+    match value {
+        Value::Array(list) => list.iter_mut().for_each(remove_extras),
+        Value::Object(map) => {
+            map.remove("extras");
+            map.values_mut().for_each(remove_extras);
+        }
+        _ => {}
+    }
 }
 
 /// The part of the document in which exporters keep the names of morph targets.
@@ -29,7 +53,7 @@ struct Named {
 #[derive(Deserialize, Default)]
 struct NamedMesh {
     #[serde(default)]
-    extras: Option<serde_json::Value>,
+    extras: Option<Value>,
 }
 
 /// `extras.targetNames` of each mesh; empty where there are none or they are something else.

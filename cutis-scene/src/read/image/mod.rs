@@ -73,6 +73,7 @@ fn decode_by_magic(bytes: &[u8], space: ColourSpace) -> Result<(Texture, usize),
         [] => Err("the file is empty".to_owned()),
         [0x76, 0x2f, 0x31, 0x01, ..] => exr::decode(bytes),
         [0x89, b'P', b'N', b'G', ..] => {
+            check_png_header(bytes)?;
             to_texture(PngDecoder::with_limits(Cursor::new(bytes), limits()).map_err(text)?, bytes, space)
         }
         [0xff, 0xd8, ..] => {
@@ -85,6 +86,16 @@ fn decode_by_magic(bytes: &[u8], space: ColourSpace) -> Result<(Texture, usize),
         }
         _ => Err("is none of PNG, JPEG, OpenEXR and Radiance HDR by its first bytes".to_owned()),
     }
+}
+
+/// Checks the size in a PNG header before the decoder makes room for it.
+fn check_png_header(bytes: &[u8]) -> Result<(), String> {
+    let word = |at: usize| match bytes.get(at..at + 4) {
+        Some(&[a, b, c, d]) => Ok(u64::from(u32::from_be_bytes([a, b, c, d]))),
+        _ => Err(format!("is cut off after {} bytes, within its header", bytes.len())),
+    };
+    // Signature, length and name of the first chunk come before.
+    check_size(word(16)?, word(20)?, 4, bytes.len())
 }
 
 fn limits() -> Limits {

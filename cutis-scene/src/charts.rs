@@ -86,8 +86,11 @@ fn for_each_sample_inside(uvs: [Vec2; 3], size: u32, mut visit: impl FnMut(usize
     }
 }
 
+/// An edge between two points with the corners that use it, as in [`EdgeUses`].
+type SharedEdge = ([u32; 2], Vec<(u32, u8)>);
+
 /// Edges in the order of their points, so that charts and seams come out the same in every run.
-fn sorted(uses: EdgeUses) -> Vec<([u32; 2], Vec<(u32, u8)>)> {
+fn sorted(uses: EdgeUses) -> Vec<SharedEdge> {
     let mut list: Vec<_> = uses.into_iter().collect();
     list.sort_unstable();
     list
@@ -105,7 +108,7 @@ fn edge_uvs(mesh: &Mesh, point_of_vertex: &[u32], (t, corner): (u32, u8), a: u32
     if point_of_vertex[ends[0] as usize] == a { uvs } else { [uvs[1], uvs[0]] }
 }
 
-fn seam(mesh: &Mesh, point_of_vertex: &[u32], ([a, b], uses): &([u32; 2], Vec<(u32, u8)>)) -> Option<Seam> {
+fn seam(mesh: &Mesh, point_of_vertex: &[u32], ([a, b], uses): &SharedEdge) -> Option<Seam> {
     let [first, second] = uses[..] else { return None };
     let uvs = [first, second].map(|side| edge_uvs(mesh, point_of_vertex, side, *a, *b));
     (uvs[0] != uvs[1]).then_some(Seam { triangles: [first.0, second.0], uvs })

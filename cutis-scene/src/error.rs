@@ -14,9 +14,39 @@ pub struct SceneError {
     pub reason: String,
 }
 
+/// Longest part of a message. Names and library messages may quote a hostile file at any length.
+const MAX_CHARS: usize = 400;
+
 impl SceneError {
     /// An error at `place` of `file`.
     pub fn new(file: &Path, place: impl Into<String>, reason: impl Into<String>) -> Self {
-        Self { file: file.display().to_string(), place: place.into(), reason: reason.into() }
+        Self {
+            file: one_line(&file.display().to_string()),
+            place: one_line(&place.into()),
+            reason: one_line(&reason.into()),
+        }
+    }
+}
+
+/// Text as it may be shown in a terminal: one line, no control characters, not endless.
+pub fn one_line(text: &str) -> String {
+    let mut shown: String =
+        text.trim().chars().take(MAX_CHARS).map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if text.trim().chars().nth(MAX_CHARS).is_some() {
+        shown.push('…');
+    }
+    shown
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_stay_on_one_line_and_end() {
+        let error = SceneError::new(Path::new("a\nb"), "line 1", format!("{}\u{1b}[2J", "x".repeat(9000)));
+        let text = error.to_string();
+        assert!(text.starts_with("a b: line 1: xxx"), "{text}");
+        assert!(!text.chars().any(char::is_control) && text.chars().count() < 1000);
     }
 }

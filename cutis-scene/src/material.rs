@@ -109,6 +109,17 @@ impl ScalarMap {
         Self { offset: value, gain: 0.0, texture: None }
     }
 
+    /// Specular intensity from a map of it: `rho_s = 0.18 + 0.16 red`, the range over a face that d'Eon et al. 2007
+    /// (GPU Gems 3, section 14.3.1) take from measurements.
+    pub fn measured_rho_s(texture: Arc<Texture>) -> Self {
+        Self { offset: 0.18, gain: 0.16, texture: Some((texture, 0)) }
+    }
+
+    /// Beckmann roughness from a map of it: `m = 0.23 + 0.09 red`; source as for [`Self::measured_rho_s`].
+    pub fn measured_roughness(texture: Arc<Texture>) -> Self {
+        Self { offset: 0.23, gain: 0.09, texture: Some((texture, 0)) }
+    }
+
     /// Value at `uv`.
     pub fn at(&self, uv: Vec2) -> f32 {
         match &self.texture {

@@ -1,1 +1,102 @@
 //! Readers: from files that nobody vouches for to a [`crate::Scene`] that can be believed.
+//!
+//! Every size a file claims is checked before memory is asked for, every index before it is used, and every error is
+//! one line that names the file, the place in it and the reason. Guesses end up in [`Scene::warnings`].
+
+mod checks;
+mod file;
+mod finish;
+mod gltf;
+mod image;
+mod obj;
+mod scene_file;
+mod textures;
+
+use crate::{Camera, Environment, Light, Material, Mesh, Scene, SceneError};
+use std::path::{Path, PathBuf};
+
+pub use image::{ColourSpace, read_image};
+
+/// What the caller knows better than the file, mostly from the command line.
+#[derive(Debug, Clone, Default)]
+pub struct ReadOptions {
+    /// Length of the mesh file's unit in mm; goes before what a scene file says. Left out: 1000 for glTF, a guess with
+    /// a warning for OBJ.
+    pub millimetres_per_unit: Option<f32>,
+    /// Turns v around against the convention of the format: for files whose textures stand on their heads.
+    pub flip_v: bool,
+    /// Diffuse colour texture for all objects.
+    pub albedo: Option<PathBuf>,
+    /// Tangent-space normal map for all objects.
+    pub normal: Option<PathBuf>,
+    /// Map of specular intensity for all objects: `rho_s = 0.18 + 0.16 red`.
+    pub specular: Option<PathBuf>,
+    /// Folder that `assets:` stands for; goes before the environment variable `CUTIS_ASSETS`.
+    pub assets_folder: Option<PathBuf>,
+}
+
+/// Reads a scene by the extension of its file: `.toml`, `.obj`, `.gltf` or `.glb`. The path may begin with `assets:`.
+///
+/// Files that a scene or glTF file names must lie in its own folder (or under `assets:` in a scene file); the paths
+/// in `options` are the caller's own and may lie anywhere.
+pub fn read_scene(path: &Path, options: &ReadOptions) -> Result<Scene, SceneError> {
+    let path = &file::resolve_for_user(path, options.assets_folder.as_deref())?;
+    let parts = match extension(path).as_str() {
+        "toml" => scene_file::read(path, options)?,
+        _ => read_mesh_file(path, options)?,
+    };
+    finish::finish(parts, path, options)
+}
+
+/// What a file gives before it is checked and completed.
+#[derive(Default)]
+struct Parts {
+    pieces: Vec<Piece>,
+    lights: Vec<Light>,
+    environment: Option<Environment>,
+    camera: CameraChoice,
+    warnings: Vec<String>,
+}
+
+/// What a file says about the camera.
+#[derive(Default)]
+enum CameraChoice {
+    /// Nothing: show everything from the front.
+    #[default]
+    Framing,
+    /// All of it.
+    Fixed(Camera),
+    /// Some of it; the rest follows from the bounds of the scene.
+    Partial(scene_file::CameraKeys),
+}
+
+/// One mesh with its material, on its way to become an object.
+struct Piece {
+    name: String,
+    /// Where in the file it stands, for messages.
+    place: String,
+    mesh: Mesh,
+    material: Material,
+}
+
+/// Reads the objects, and what else the format has, of a mesh file.
+fn read_mesh_file(path: &Path, options: &ReadOptions) -> Result<Parts, SceneError> {
+    if let Some(mm) = options.millimetres_per_unit
+        && !(mm > 0.0 && mm.is_finite())
+    {
+        return Err(SceneError::new(path, "millimetres_per_unit", format!("must be above 0, got {mm}")));
+    }
+    let extension = extension(path);
+    match extension.as_str() {
+        "obj" => obj::read(&file::read_bytes(path, "whole file")?, path, options),
+        "gltf" | "glb" => gltf::read(&file::read_bytes(path, "whole file")?, path, options),
+        other => {
+            let reason = format!("`.{other}` is not known; .toml, .obj, .gltf and .glb are");
+            Err(SceneError::new(path, "file name", reason))
+        }
+    }
+}
+
+fn extension(path: &Path) -> String {
+    path.extension().map_or(String::new(), |e| e.to_string_lossy().to_ascii_lowercase())
+}

@@ -1,0 +1,131 @@
+//! `[[light]]`: directional, point and spot lights, and the environment.
+
+use super::Context;
+use super::keys::Keys;
+use crate::read::image::ColourSpace;
+use crate::studio::studio_environment;
+use crate::{Environment, Light, SceneError};
+use glam::Vec3;
+
+/// Most lights of a scene.
+const MAX_LIGHTS: usize = 1000;
+
+/// Strongest light, W/sr or W/m²: farther from one than any real lamp.
+const MAX_INTENSITY: f32 = 1e9;
+
+/// All lights of a scene file.
+#[derive(Default)]
+pub(super) struct Lights {
+    /// Whether the file has any, so that those of the mesh file stay dark.
+    pub(super) any: bool,
+    pub(super) lights: Vec<Light>,
+    pub(super) environment: Option<Environment>,
+}
+
+/// Reads every `[[light]]`.
+pub(super) fn read_all(root: &Keys, context: &mut Context) -> Result<Lights, SceneError> {
+    let tables = root.tables("light")?;
+    if tables.len() > MAX_LIGHTS {
+        return Err(root.error("light", format!("{} lights; at most {MAX_LIGHTS}", tables.len())));
+    }
+    let mut all = Lights { any: !tables.is_empty(), ..Lights::default() };
+    for keys in &tables {
+        match keys.required("kind", keys.string("kind")?)? {
+            "directional" => all.lights.push(directional(keys)?),
+            "point" => all.lights.push(point(keys)?),
+            "spot" => all.lights.push(spot(keys)?),
+            "environment" if all.environment.is_some() => {
+                return Err(keys.error("kind", "is a second environment; a scene has one"));
+            }
+            "environment" => all.environment = Some(environment(keys, context)?),
+            other => {
+                let reason = format!("`{other}` is not known; directional, point, spot and environment are");
+                return Err(keys.error("kind", reason));
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// Linear colour times intensity.
+fn strength(keys: &Keys) -> Result<Vec3, SceneError> {
+    let colour = keys.vector_in("colour", 0.0..=MAX_INTENSITY)?.unwrap_or(Vec3::ONE);
+    let intensity = keys.number_in("intensity", 0.0..=MAX_INTENSITY)?.unwrap_or(1.0);
+    Ok(colour * intensity)
+}
+
+fn position(keys: &Keys) -> Result<Vec3, SceneError> {
+    keys.required("position_mm", keys.vector_in("position_mm", -1e7..=1e7)?)
+}
+
+fn radius(keys: &Keys) -> Result<f32, SceneError> {
+    Ok(keys.number_in("radius_mm", 0.0..=1e6)?.unwrap_or(0.0))
+}
+
+/// `direction` is the way the light travels; `intensity` its irradiance in W/m².
+fn directional(keys: &Keys) -> Result<Light, SceneError> {
+    keys.only(&["kind", "direction", "colour", "intensity", "angular_radius_degrees"])?;
+    let angular_radius = keys.number_in("angular_radius_degrees", 0.0..=45.0)?.unwrap_or(0.0);
+    Ok(Light::Directional {
+        dir_to_light: -keys.required("direction", keys.direction("direction")?)?,
+        irradiance_w_per_m2: strength(keys)?,
+        angular_radius_rad: angular_radius.to_radians(),
+    })
+}
+
+/// `intensity` in W/sr.
+fn point(keys: &Keys) -> Result<Light, SceneError> {
+    keys.only(&["kind", "position_mm", "colour", "intensity", "radius_mm"])?;
+    Ok(Light::Point {
+        position_mm: position(keys)?,
+        intensity_w_per_sr: strength(keys)?,
+        radius_mm: radius(keys)?,
+    })
+}
+
+/// `direction` is the way the light travels along its axis; `intensity` in W/sr on the axis.
+fn spot(keys: &Keys) -> Result<Light, SceneError> {
+    keys.only(&[
+        "kind",
+        "position_mm",
+        "direction",
+        "colour",
+        "intensity",
+        "radius_mm",
+        "inner_cone_degrees",
+        "outer_cone_degrees",
+    ])?;
+    let outer = keys.number_in("outer_cone_degrees", f32::MIN_POSITIVE..=90.0)?.unwrap_or(45.0);
+    let inner = keys.number_in("inner_cone_degrees", 0.0..=90.0)?.unwrap_or(0.0);
+    if inner >= outer {
+        let reason = format!("must be below outer_cone_degrees ({outer}), got {inner}");
+        return Err(keys.error("inner_cone_degrees", reason));
+    }
+    Ok(Light::Spot {
+        position_mm: position(keys)?,
+        dir_travel: keys.required("direction", keys.direction("direction")?)?,
+        intensity_w_per_sr: strength(keys)?,
+        inner_cone_rad: inner.to_radians(),
+        outer_cone_rad: outer.to_radians(),
+        radius_mm: radius(keys)?,
+    })
+}
+
+/// A latitude-longitude image, or the studio where no `path` is given. Colour times intensity scales its radiance.
+fn environment(keys: &Keys, context: &mut Context) -> Result<Environment, SceneError> {
+    keys.only(&["kind", "path", "rotation_degrees", "colour", "intensity", "visible"])?;
+    let rotation = keys.number_in("rotation_degrees", -360.0..=360.0)?.unwrap_or(0.0);
+    let map = match keys.string("path")? {
+        None => studio_environment().map,
+        Some(text) => {
+            let path = context.folder.resolve(text).map_err(|reason| keys.error("path", reason))?;
+            context.textures.file(&path, ColourSpace::Colour, &mut context.warnings)?
+        }
+    };
+    Ok(Environment {
+        map,
+        rotation_rad: rotation.to_radians(),
+        radiance_scale: strength(keys)?,
+        visible: keys.boolean("visible")?.unwrap_or(false),
+    })
+}

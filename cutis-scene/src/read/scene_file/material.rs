@@ -1,0 +1,197 @@
+//! `[material]`: what it says replaces what the mesh file says, key by key.
+
+use super::Context;
+use super::keys::Keys;
+use crate::read::image::ColourSpace;
+use crate::{ColourMap, Material, NormalMap, NormalSpace, ScalarMap, Scattering, SceneError, Texture};
+use cutis_optics::Medium;
+use glam::Vec3;
+use std::sync::Arc;
+
+const KNOWN: [&str; 11] = [
+    "preset",
+    "medium",
+    "albedo",
+    "albedo_colour",
+    "albedo_mix",
+    "normal",
+    "normal_space",
+    "normal_strength",
+    "specular",
+    "roughness",
+    "f0",
+];
+
+/// The parts of a material that a scene file gives.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Change {
+    scattering: Option<Scattering>,
+    albedo: Option<ColourMap>,
+    albedo_mix: Option<f32>,
+    normal: Option<NormalMap>,
+    rho_s: Option<ScalarMap>,
+    roughness: Option<ScalarMap>,
+    f0: Option<f32>,
+}
+
+impl Change {
+    /// Puts what is given in the place of what was.
+    pub(super) fn apply(&self, material: &mut Material) {
+        fn set<T: Clone>(slot: &mut T, value: &Option<T>) {
+            if let Some(value) = value {
+                *slot = value.clone();
+            }
+        }
+        set(&mut material.scattering, &self.scattering);
+        set(&mut material.albedo, &self.albedo);
+        set(&mut material.albedo_mix, &self.albedo_mix);
+        set(&mut material.rho_s, &self.rho_s);
+        set(&mut material.roughness, &self.roughness);
+        set(&mut material.f0, &self.f0);
+        if self.normal.is_some() {
+            material.normal = self.normal.clone();
+        }
+    }
+}
+
+/// Reads `[material]`.
+pub(super) fn read(keys: &Keys, context: &mut Context) -> Result<Change, SceneError> {
+    keys.only(&KNOWN)?;
+    Ok(Change {
+        scattering: scattering(keys)?,
+        albedo: albedo(keys, context)?,
+        albedo_mix: keys.number_in("albedo_mix", 0.0..=1.0)?,
+        normal: normal(keys, context)?,
+        rho_s: scalar(keys, "specular", 0.0..=10.0, ScalarMap::measured_rho_s, context)?,
+        roughness: scalar(keys, "roughness", 0.01..=1.0, ScalarMap::measured_roughness, context)?,
+        f0: keys.number_in("f0", 0.0..=1.0)?,
+    })
+}
+
+fn scattering(keys: &Keys) -> Result<Option<Scattering>, SceneError> {
+    let preset = keys.string("preset")?;
+    match (preset, keys.table("medium")?) {
+        (Some(_), Some(_)) => Err(keys.error("medium", "stands beside `preset`; only one can be the tissue")),
+        (Some(""), None) => Err(keys.error("preset", "is empty")),
+        // Names are looked up where they are known, in the renderer.
+        (Some(name), None) => Ok(Some(Scattering::Preset(name.to_owned()))),
+        (None, Some(medium_keys)) => medium(&medium_keys).map(Some),
+        (None, None) => Ok(None),
+    }
+}
+
+/// Coefficients per channel in 1/mm, from nearly clear to nearly opaque.
+fn medium(keys: &Keys) -> Result<Scattering, SceneError> {
+    keys.only(&["sigma_a_per_mm", "sigma_s_reduced_per_mm", "refractive_index"])?;
+    let coefficients = |key, least| {
+        keys.vector_in(key, least..=1e4)?;
+        keys.required(key, keys.triple(key)?)
+    };
+    let sigma_a = coefficients("sigma_a_per_mm", 0.0)?;
+    let sigma_s_reduced = coefficients("sigma_s_reduced_per_mm", f32::MIN_POSITIVE)?;
+    keys.number_in("refractive_index", 1.0..=3.0)?;
+    let index = keys.double("refractive_index")?.unwrap_or(1.4);
+    Ok(Scattering::Medium([0, 1, 2].map(|i| Medium {
+        sigma_a_per_mm: sigma_a[i],
+        sigma_s_reduced_per_mm: sigma_s_reduced[i],
+        refractive_index: index,
+    })))
+}
+
+/// `albedo` is a path or a linear colour; `albedo_colour` a factor on it.
+fn albedo(keys: &Keys, context: &mut Context) -> Result<Option<ColourMap>, SceneError> {
+    let factor = keys.vector_in("albedo_colour", 0.0..=1.0)?;
+    match keys.kind("albedo") {
+        None => Ok(factor.map(|factor| ColourMap { factor, texture: None })),
+        Some("array") => {
+            let colour = keys.vector_in("albedo", 0.0..=1.0)?.unwrap_or(Vec3::ONE);
+            Ok(Some(ColourMap { factor: colour * factor.unwrap_or(Vec3::ONE), texture: None }))
+        }
+        Some("string") => {
+            let text = keys.string("albedo")?.unwrap_or_default();
+            let texture = texture(keys, "albedo", text, ColourSpace::Colour, context)?;
+            Ok(Some(ColourMap { factor: factor.unwrap_or(Vec3::ONE), texture: Some(texture) }))
+        }
+        Some(kind) => {
+            Err(keys.error("albedo", format!("must be a path or a list of three numbers, found {kind}")))
+        }
+    }
+}
+
+fn normal(keys: &Keys, context: &mut Context) -> Result<Option<NormalMap>, SceneError> {
+    let space = match keys.string("normal_space")? {
+        None | Some("tangent") => NormalSpace::Tangent,
+        Some("object") => NormalSpace::Object,
+        Some(other) => {
+            return Err(keys.error("normal_space", format!("`{other}` is not known; tangent and object are")));
+        }
+    };
+    let strength = keys.number_in("normal_strength", -10.0..=10.0)?.unwrap_or(1.0);
+    let Some(text) = keys.string("normal")? else {
+        for key in ["normal_space", "normal_strength"] {
+            if keys.has(key) {
+                return Err(keys.error(key, "has no `normal` to apply to"));
+            }
+        }
+        return Ok(None);
+    };
+    let texture = texture(keys, "normal", text, ColourSpace::Data, context)?;
+    Ok(Some(NormalMap { texture, space, strength }))
+}
+
+/// A number, a path (read as `by_path` says), or `{ path, channel, offset, gain }`.
+fn scalar(
+    keys: &Keys,
+    key: &str,
+    limits: std::ops::RangeInclusive<f32>,
+    by_path: fn(Arc<Texture>) -> ScalarMap,
+    context: &mut Context,
+) -> Result<Option<ScalarMap>, SceneError> {
+    match keys.kind(key) {
+        None => Ok(None),
+        Some("integer" | "float") => Ok(keys.number_in(key, limits)?.map(ScalarMap::constant)),
+        Some("string") => {
+            let text = keys.string(key)?.unwrap_or_default();
+            Ok(Some(by_path(texture(keys, key, text, ColourSpace::Data, context)?)))
+        }
+        Some("table") => {
+            let table = keys.required(key, keys.table(key)?)?;
+            scalar_table(&table, context).map(Some)
+        }
+        Some(kind) => {
+            let reason =
+                format!("must be a number, a path, or {{ path, channel, offset, gain }}, found {kind}");
+            Err(keys.error(key, reason))
+        }
+    }
+}
+
+fn scalar_table(keys: &Keys, context: &mut Context) -> Result<ScalarMap, SceneError> {
+    keys.only(&["path", "channel", "offset", "gain"])?;
+    let offset = keys.number_in("offset", -10.0..=10.0)?.unwrap_or(0.0);
+    let gain = keys.number_in("gain", -10.0..=10.0)?.unwrap_or(1.0);
+    let channel = match keys.string("channel")? {
+        None | Some("red" | "r") => 0,
+        Some("green" | "g") => 1,
+        Some("blue" | "b") => 2,
+        Some("alpha" | "a") => 3,
+        Some(other) => {
+            let reason = format!("`{other}` is not known; red, green, blue and alpha are");
+            return Err(keys.error("channel", reason));
+        }
+    };
+    let text = keys.required("path", keys.string("path")?)?;
+    let texture = texture(keys, "path", text, ColourSpace::Data, context)?;
+    Ok(ScalarMap { offset, gain, texture: Some((texture, channel)) })
+}
+
+fn texture(
+    keys: &Keys,
+    key: &str,
+    text: &str,
+    space: ColourSpace,
+    context: &mut Context,
+) -> Result<Arc<Texture>, SceneError> {
+    let path = context.folder.resolve(text).map_err(|reason| keys.error(key, reason))?;
+    context.textures.file(&path, space, &mut context.warnings)
+}

@@ -1,0 +1,121 @@
+//! Scene files in TOML: one mesh, its material, lights and a camera. Every key is known, every number checked, and
+//! every error names the line.
+
+mod camera;
+mod keys;
+mod light;
+mod material;
+
+use super::file::{Folder, read_bytes};
+use super::textures::Textures;
+use super::{CameraChoice, Parts, ReadOptions, read_mesh_file};
+use crate::SceneError;
+use keys::{Keys, Source};
+use std::path::{Path, PathBuf};
+use toml::de::DeTable;
+
+pub(super) use camera::CameraKeys;
+
+/// Largest scene file, bytes: honest ones have one thousand.
+const MAX_BYTES: usize = 1 << 20;
+
+/// Triangles that are asked of the built-in head.
+const HEAD_TRIANGLES: usize = 60_000;
+
+/// What the files of a scene are read with.
+struct Context<'a> {
+    folder: Folder,
+    textures: Textures,
+    options: &'a ReadOptions,
+    warnings: Vec<String>,
+}
+
+/// Where the mesh comes from.
+enum MeshSource {
+    /// A file, and the options it is read with.
+    File(PathBuf, ReadOptions),
+    /// The head made by code, with about so many triangles.
+    BuiltInHead(usize),
+}
+
+/// Reads a scene file and the mesh it names.
+pub(super) fn read(path: &Path, options: &ReadOptions) -> Result<Parts, SceneError> {
+    let bytes = read_bytes(path, "whole file")?;
+    if bytes.len() > MAX_BYTES {
+        let reason = format!("has {} bytes; a scene file has at most {MAX_BYTES}", bytes.len());
+        return Err(SceneError::new(path, "whole file", reason));
+    }
+    let text = std::str::from_utf8(&bytes).map_err(|e| {
+        let line = 1 + bytes[..e.valid_up_to()].iter().filter(|&&b| b == b'\n').count();
+        SceneError::new(path, format!("line {line}"), "is not text in UTF-8")
+    })?;
+    let source = Source { file: path, text };
+    let table = DeTable::parse(text).map_err(|e| {
+        let line = e.span().map_or(1, |span| source.line(span.start));
+        SceneError::new(path, format!("line {line}"), e.message())
+    })?;
+    let folder = Folder::of(path, options.assets_folder.as_deref());
+    let context = Context { folder, textures: Textures::default(), options, warnings: Vec::new() };
+    to_parts(&Keys::root(source, &table), context)
+}
+
+fn to_parts(root: &Keys, mut context: Context) -> Result<Parts, SceneError> {
+    root.only(&["mesh", "material", "light", "camera"])?;
+    let Some(mesh) = root.table("mesh")? else {
+        return Err(root.error("mesh", "is missing: a scene needs [mesh] with `path` or `builtin`"));
+    };
+    // What is small and cheap is checked before a large mesh is read.
+    let camera = root.table("camera")?.map(|keys| camera::read(&keys)).transpose()?;
+    let mesh_source = mesh_source(&mesh, &context)?;
+    let lights = light::read_all(root, &mut context)?;
+    let mut parts = load(&mesh, mesh_source)?;
+    if let Some(keys) = root.table("material")? {
+        let change = material::read(&keys, &mut context)?;
+        parts.pieces.iter_mut().for_each(|piece| change.apply(&mut piece.material));
+    }
+    if lights.any {
+        parts.lights = lights.lights;
+        parts.environment = lights.environment;
+    }
+    if let Some(camera) = camera {
+        parts.camera = CameraChoice::Partial(camera);
+    }
+    parts.warnings.append(&mut context.warnings);
+    Ok(parts)
+}
+
+/// Reads `[mesh]`.
+fn mesh_source(keys: &Keys, context: &Context) -> Result<MeshSource, SceneError> {
+    keys.only(&["path", "builtin", "millimetres_per_unit", "flip_v"])?;
+    let mm = keys.number_in("millimetres_per_unit", f32::MIN_POSITIVE..=1e6)?;
+    let flip_v = keys.boolean("flip_v")?.unwrap_or(false);
+    match (keys.string("path")?, keys.string("builtin")?) {
+        (Some(_), Some(_)) => Err(keys.error("builtin", "stands beside `path`; only one can be the mesh")),
+        (None, None) => Err(keys.error("path", "is missing: [mesh] needs `path` or `builtin`")),
+        (None, Some("head")) => Ok(MeshSource::BuiltInHead(HEAD_TRIANGLES)),
+        (None, Some(other)) => Err(keys.error("builtin", format!("`{other}` is not known; `head` is"))),
+        (Some(text), None) => {
+            let path = context.folder.resolve(text).map_err(|reason| keys.error("path", reason))?;
+            let options = ReadOptions {
+                millimetres_per_unit: context.options.millimetres_per_unit.or(mm),
+                flip_v: flip_v != context.options.flip_v,
+                ..ReadOptions::default()
+            };
+            Ok(MeshSource::File(path, options))
+        }
+    }
+}
+
+/// The objects of the mesh, with whatever else its file has.
+fn load(keys: &Keys, source: MeshSource) -> Result<Parts, SceneError> {
+    match source {
+        MeshSource::File(path, options) => read_mesh_file(&path, &options),
+        MeshSource::BuiltInHead(triangles) => built_in_head(keys, triangles),
+    }
+}
+
+/// The seam for the built-in head: return the pieces of `crate::head::built_in(triangles)` from here.
+fn built_in_head(keys: &Keys, triangles: usize) -> Result<Parts, SceneError> {
+    let reason = format!("a head of {triangles} triangles is not made by this version yet; use `path`");
+    Err(keys.error("builtin", reason))
+}

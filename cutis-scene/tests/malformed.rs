@@ -1,0 +1,649 @@
+//! Spoiled files: each is refused quickly, in one line that names the file and the place, without a panic.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod common;
+
+use common::{Glb, SQUARE_OBJ, base64, encode, floats, glb_from, small_jpeg, small_png, write};
+use cutis_scene::{ColourSpace, ReadOptions, SceneError, read_image, read_scene};
+use image::{DynamicImage, ImageFormat};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Far above the slowest case (0.1 s), far below what a person takes for a hang.
+const QUICK: Duration = Duration::from_secs(5);
+
+/// A spoiled file: name, bytes, and words that the message must hold.
+type Case = (&'static str, Vec<u8>, &'static str);
+
+fn read(path: &Path) -> Result<(), SceneError> {
+    let is_image = path.extension().is_some_and(|e| ["png", "jpg", "exr", "hdr"].iter().any(|i| e == *i));
+    match is_image {
+        true => read_image(path, ColourSpace::Colour, &mut Vec::new()).map(drop),
+        false => read_scene(path, &ReadOptions::default()).map(drop),
+    }
+}
+
+/// Reads a file that must be refused; what is wrong with the answer, if anything.
+fn complaint(path: &Path, words: &str) -> Option<String> {
+    let start = Instant::now();
+    let Err(error) = read(path) else {
+        return Some(format!("{} was believed; expected `{words}`", path.display()));
+    };
+    let message = error.to_string();
+    let name = path.file_name().unwrap().to_string_lossy();
+    let flaw = if start.elapsed() > QUICK {
+        "took too long"
+    } else if message.contains('\n') || message.chars().count() > 1300 {
+        "is more than a line"
+    } else if !error.file.contains(&*name) && error.place != "image" {
+        "names another file"
+    } else if error.place.is_empty() || error.reason.is_empty() {
+        "lacks a place or a reason"
+    } else if !message.contains(words) {
+        "says something else"
+    } else {
+        return None;
+    };
+    Some(format!("expected `{words}`, {flaw}: {message}"))
+}
+
+fn refuse(path: &Path, words: &str) {
+    assert_eq!(complaint(path, words), None);
+}
+
+fn refuse_all(cases: Vec<Case>) {
+    let folder = tempfile::tempdir().unwrap();
+    let complaints: Vec<String> = cases
+        .into_iter()
+        .filter_map(|(name, bytes, words)| complaint(&write(folder.path(), name, bytes), words))
+        .collect();
+    assert!(complaints.is_empty(), "{complaints:#?}");
+}
+
+/// OBJ text with something after the valid square.
+fn obj(extra: &str) -> Vec<u8> {
+    format!("{SQUARE_OBJ}{extra}\n").into_bytes()
+}
+
+#[test]
+fn obj_files() {
+    refuse_all(vec![
+        ("empty.obj", vec![], "holds no faces"),
+        ("noise.obj", vec![0, 255, 7, 10, 200], "holds no faces"),
+        ("zero.obj", obj("f 0/1 1/1 2/1"), "line 10: `v` 0 does not exist"),
+        ("past-end.obj", obj("f 1/1 2/2 5/1"), "line 10: `v` 5 does not exist: 4 are defined"),
+        ("uv-past-end.obj", obj("f 1/1 2/2 3/9"), "`vt` 9 does not exist"),
+        ("normal-past-end.obj", obj("f 1/1/1 2/2/1 3/3/1"), "`vn` 1 does not exist: 0 are defined"),
+        ("negative.obj", obj("f -5/1 2/2 3/3"), "`v` -5 does not exist"),
+        ("huge-number.obj", obj("f 99999999999999999999/1 2/2 3/3"), "not the number of a `v`"),
+        ("least-number.obj", obj("f -9223372036854775808/1 2/2 3/3"), "does not exist"),
+        ("two-corners.obj", obj("f 1/1 2/2"), "this one has 2"),
+        ("empty-face.obj", obj("f"), "this one has 0"),
+        ("letters.obj", obj("v 1 two 3"), "line 10: `two` is not a finite number"),
+        ("nan.obj", obj("v nan 0 0"), "`nan` is not a finite number"),
+        ("infinite.obj", obj("v 1 2 1e99"), "`1e99` is not a finite number"),
+        ("short.obj", obj("v 1 2"), "3 numbers are needed, found 2"),
+        ("short-uv.obj", obj("vt"), "1 numbers are needed, found 0"),
+        (
+            "no-uv.obj",
+            b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec(),
+            "line 4: the face has no texture coordinates",
+        ),
+        (
+            "no-uv-normals.obj",
+            obj("vn 0 0 1\nf 1//1 2//1 3//1"),
+            "line 11: the face has no texture coordinates",
+        ),
+        ("latin.obj", [b"v 0 0 \xe9\n".as_slice(), &obj("")].concat(), "line 1: is not text in UTF-8"),
+        ("flat.obj", b"v 0 0 0\nvt 0 0\nf 1/1 1/1 1/1\n".to_vec(), "no triangle of the mesh has an area"),
+        ("far.obj", SQUARE_OBJ.replace("v 0 0 0\n", "v 3e38 0 0\n").into_bytes(), "no triangle"),
+        ("wild-uv.obj", SQUARE_OBJ.replace("vt 0 0\n", "vt 1e30 0\n").into_bytes(), "texture coordinates"),
+        ("slashes.obj", obj("f / / /"), "not the number of a `v`"),
+        ("unknown.fbx", b"Kaydara".to_vec(), "`.fbx` is not known"),
+    ]);
+}
+
+/// The square as GLB after a change of its document.
+fn glb(change: impl FnOnce(&mut Glb)) -> Vec<u8> {
+    let mut glb = Glb::square();
+    change(&mut glb);
+    glb.bytes()
+}
+
+/// The square as GLB with one value of the document replaced.
+fn with(pointer: &str, value: Value) -> Vec<u8> {
+    glb(|glb| {
+        let (parent, key) = pointer.rsplit_once('/').unwrap();
+        let parent = glb.json.pointer_mut(parent).unwrap();
+        match parent {
+            Value::Array(list) => list[key.parse::<usize>().unwrap()] = value,
+            parent => parent[key] = value,
+        }
+    })
+}
+
+/// Bytes with a little-endian word replaced.
+fn with_word(mut bytes: Vec<u8>, at: usize, word: u32) -> Vec<u8> {
+    bytes[at..at + 4].copy_from_slice(&word.to_le_bytes());
+    bytes
+}
+
+#[test]
+fn glb_containers() {
+    let good = Glb::square().bytes();
+    let json_length = u32::from_le_bytes(good[12..16].try_into().unwrap()) as usize;
+    refuse_all(vec![
+        ("empty.glb", vec![], "is empty"),
+        ("magic.glb", b"gltf____________".to_vec(), "byte 0: begins neither"),
+        ("only-magic.glb", b"glTF".to_vec(), "byte 4: the file ends here"),
+        ("version.glb", with_word(good.clone(), 4, 1), "GLB version 1"),
+        ("half.glb", good[..good.len() / 2].to_vec(), "byte 8: the header claims"),
+        ("four-gigabytes.glb", with_word(good.clone(), 8, u32::MAX), "claims 4294967295 bytes"),
+        ("json-chunk.glb", with_word(good.clone(), 12, u32::MAX), "byte 12: a chunk claims 4294967295"),
+        ("binary-chunk.glb", with_word(good.clone(), 20 + json_length, 0x7fff_ffff), "a chunk claims"),
+        ("no-json.glb", with_word(good.clone(), 16, 0x004e_4942), "no JSON chunk"),
+        ("cut-chunk.glb", with_word(good.clone(), 8, 16), "byte 12: a chunk claims"),
+        ("bad-json.glb", glb_from(b"{\"asset\": nonsense".to_vec(), &[]), "JSON line 1, column"),
+        ("nested.glb", glb_from([vec![b'['; 100_000], b"{".to_vec()].concat(), &[]), "JSON line 1"),
+        ("deep-extension.glb", glb_from(deep_extension(), &[]), "recursion limit"),
+        ("noise.gltf", b"{\x00\x01\xff".to_vec(), "JSON line 1"),
+        (
+            "other-version.gltf",
+            json!({ "asset": { "version": "1.0" } }).to_string().into_bytes(),
+            "asset.version",
+        ),
+        ("nothing.gltf", json!({ "asset": { "version": "2.0" } }).to_string().into_bytes(), "shows no mesh"),
+    ]);
+}
+
+/// A document with an unknown extension that is nested a hundred thousand deep.
+fn deep_extension() -> Vec<u8> {
+    let depth = 100_000;
+    format!(
+        "{{\"asset\":{{\"version\":\"2.0\"}},\"extensions\":{{\"x\":{}{}}}}}",
+        "[".repeat(depth),
+        "]".repeat(depth)
+    )
+    .into_bytes()
+}
+
+#[test]
+fn gltf_numbers_and_ranges() {
+    refuse_all(vec![
+        ("count.glb", with("/accessors/0/count", json!(5)), "accessors[0]: 5 elements from byte 0 lie past"),
+        ("huge-count.glb", with("/accessors/0/count", json!(4_000_000_000u64)), "4000000000 vertices"),
+        ("index-count.glb", with("/accessors/2/count", json!(u64::MAX)), "accessors[2]"),
+        ("zero-count.glb", with("/accessors/0/count", json!(0)), "0 vertices"),
+        ("negative-count.glb", with("/accessors/0/count", json!(-4)), "invalid value"),
+        ("offset.glb", with("/accessors/1/byteOffset", json!(16)), "lie past the end of their bufferView"),
+        ("overflow.glb", with("/accessors/1/byteOffset", json!(u64::MAX)), "lie past the end"),
+        ("stride.glb", with("/bufferViews/0/byteStride", json!(4)), "byteStride 4"),
+        ("huge-stride.glb", with("/bufferViews/0/byteStride", json!(100_000)), "byteStride 100000"),
+        ("view.glb", with("/bufferViews/2/byteLength", json!(1000)), "bufferViews[2]: 1000 bytes from 80"),
+        ("view-overflow.glb", with("/bufferViews/2/byteOffset", json!(u64::MAX)), "bufferViews[2]"),
+        ("no-view.glb", with("/accessors/0/bufferView", json!(9)), "names bufferViews[9]"),
+        ("no-buffer.glb", with("/bufferViews/0/buffer", json!(3)), "names buffers[3]"),
+        ("buffer.glb", with("/buffers/0/byteLength", json!(4_000_000_000u64)), "claims 4000000000 bytes"),
+        ("component.glb", with("/accessors/0/componentType", json!(5123)), "componentType U16 does not fit"),
+        ("unknown-component.glb", with("/accessors/0/componentType", json!(1)), "unknown componentType"),
+        ("float-indices.glb", with("/accessors/2/componentType", json!(5126)), "componentType F32"),
+        ("type.glb", with("/accessors/0/type", json!("VEC2")), "has 2 components, 3 are needed"),
+        ("unknown-type.glb", with("/accessors/0/type", json!("VEC9")), "type that is not used"),
+        ("nan.glb", glb(|g| g.binary[0..4].copy_from_slice(&f32::NAN.to_le_bytes())), "vertex 0 lies at"),
+        (
+            "infinite.glb",
+            glb(|g| g.binary[4..8].copy_from_slice(&f32::INFINITY.to_le_bytes())),
+            "vertex 0 lies at",
+        ),
+        (
+            "nan-uv.glb",
+            glb(|g| g.binary[48..52].copy_from_slice(&f32::NAN.to_le_bytes())),
+            "texture coordinates",
+        ),
+        ("index.glb", glb(|g| g.binary[80] = 200), "an index names vertex 200"),
+        ("no-accessor.glb", with("/meshes/0/primitives/0/indices", json!(77)), "names accessors[77]"),
+        (
+            "no-positions.glb",
+            with("/meshes/0/primitives/0/attributes", json!({ "TEXCOORD_0": 1 })),
+            "no POSITION",
+        ),
+        (
+            "far-positions.glb",
+            with("/meshes/0/primitives/0/attributes/POSITION", json!(99)),
+            "names number 99",
+        ),
+        (
+            "no-uvs.glb",
+            with("/meshes/0/primitives/0/attributes", json!({ "POSITION": 0 })),
+            "has no TEXCOORD_0",
+        ),
+        ("few-uvs.glb", with("/accessors/1/count", json!(3)), "3 elements for 4 vertices"),
+        ("mode.glb", with("/meshes/0/primitives/0/mode", json!(99)), "unknown mode"),
+        ("points.glb", with("/meshes/0/primitives/0/mode", json!(0)), "shows no mesh"),
+        ("thirds.glb", with("/accessors/2/count", json!(5)), "whole triangles"),
+        ("sparse-index.glb", sparse(4, 1), "replaces element 4 of 4"),
+        ("sparse-count.glb", sparse(0, 5), "has 5 of 4 elements"),
+        ("sparse-huge.glb", sparse(0, u64::MAX), "sparse"),
+        (
+            "no-views-at-all.glb",
+            glb(|g| drop(g.json["accessors"][0].as_object_mut().unwrap().remove("bufferView"))),
+            "bufferView",
+        ),
+    ]);
+}
+
+/// The square with a sparse accessor that replaces `count` elements beginning at `index`.
+fn sparse(index: u8, count: u64) -> Vec<u8> {
+    glb(|glb| {
+        let at = glb.add_view(&[index]);
+        let to = glb.add_view(&floats(&[1.0; 3]));
+        glb.json["accessors"][0]["sparse"] = json!({
+            "count": count,
+            "indices": { "bufferView": at, "componentType": 5121 },
+            "values": { "bufferView": to }
+        });
+    })
+}
+
+#[test]
+fn gltf_hierarchies() {
+    let node = |i: usize| json!({ "children": [i + 1] });
+    let deep: Vec<Value> = (0..50_000).map(node).chain([json!({ "mesh": 0 })]).collect();
+    let ring = json!([{ "mesh": 0 }, { "children": [2] }, { "children": [3] }, { "children": [1] }]);
+    let many: Vec<Value> = vec![json!({}); 200_001];
+    let diamond = json!([{ "children": [1, 2] }, { "children": [3] }, { "children": [3] }, { "mesh": 0 }]);
+    refuse_all(vec![
+        ("self.glb", with("/nodes/0/children", json!([0])), "circle"),
+        ("ring.glb", with("/nodes", ring), "circle"),
+        ("two-parents.glb", with("/nodes", diamond), "nodes[3]: has two parents"),
+        ("deep.glb", with("/nodes", Value::Array(deep)), "nested deeper than 1000"),
+        ("many.glb", with("/nodes", Value::Array(many)), "there are 200001"),
+        ("no-child.glb", with("/nodes/0/children", json!([5])), "names node 5, but there are 1"),
+        ("no-node.glb", with("/scenes/0/nodes", json!([5])), "names node 5"),
+        ("no-scene.glb", with("/scene", json!(5)), "scene: names number 5"),
+        ("no-mesh.glb", with("/nodes/0/mesh", json!(5)), "nodes[0].mesh: names number 5"),
+        ("nan-matrix.glb", with("/nodes/0/scale", json!([3e38, 1, 1])), "transform is not finite"),
+        ("far-away.glb", with("/nodes/0/translation", json!([1e30, 0, 0])), "below 1e9 mm"),
+        ("no-skin.glb", with("/nodes/0/skin", json!(0)), "nodes[0].skin"),
+        ("no-joints.glb", skinned(json!([{ "joints": [] }]), 0, 1.0), "skins[0]: has 0 joints"),
+        ("far-joint.glb", skinned(json!([{ "joints": [9] }]), 0, 1.0), "names node 9"),
+        (
+            "vertex-joint.glb",
+            skinned(json!([{ "joints": [0] }]), 7, 1.0),
+            "names joint 7, but the skin has 1",
+        ),
+        ("weight.glb", skinned(json!([{ "joints": [0] }]), 0, f32::NAN), "has the weight NaN"),
+        (
+            "few-matrices.glb",
+            skinned(json!([{ "joints": [0], "inverseBindMatrices": 0 }]), 0, 1.0),
+            "16 are needed",
+        ),
+        ("bomb.glb", instances(), "more than 10000000 vertices"),
+    ]);
+}
+
+/// The square with a skin, all vertices at one joint.
+fn skinned(skins: Value, joint: u8, weight: f32) -> Vec<u8> {
+    glb(|glb| {
+        let joints = glb.add_accessor(&[joint, 0, 0, 0].repeat(4), 5121, 4, "VEC4");
+        let weights = glb.add_accessor(&floats(&[weight, 0., 0., 0.].repeat(4)), 5126, 4, "VEC4");
+        let attributes = &mut glb.json["meshes"][0]["primitives"][0]["attributes"];
+        attributes["JOINTS_0"] = json!(joints);
+        attributes["WEIGHTS_0"] = json!(weights);
+        glb.json["nodes"][0]["skin"] = json!(0);
+        glb.json["skins"] = skins;
+    })
+}
+
+/// A hundred nodes that each show the same mesh of 120,000 vertices: small to store, large to build.
+fn instances() -> Vec<u8> {
+    glb(|glb| {
+        let corners: Vec<f32> =
+            (0..120_000).flat_map(|i| [i as f32, (i % 7) as f32, (i % 3) as f32]).collect();
+        let positions = glb.add_accessor(&floats(&corners), 5126, 120_000, "VEC3");
+        let uvs = glb.add_accessor(&floats(&vec![0.5; 240_000]), 5126, 120_000, "VEC2");
+        glb.json["meshes"][0]["primitives"] =
+            json!([{ "attributes": { "POSITION": positions, "TEXCOORD_0": uvs } }]);
+        glb.json["nodes"] = json!(vec![json!({ "mesh": 0 }); 100]);
+        glb.json["scenes"][0]["nodes"] = json!((0..100).collect::<Vec<_>>());
+    })
+}
+
+#[test]
+fn gltf_references() {
+    let textured = |image: Value| {
+        glb(|glb| {
+            glb.json["images"] = json!([image]);
+            glb.json["textures"] = json!([{ "source": 0 }]);
+            glb.json["materials"] =
+                json!([{ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }]);
+            glb.json["meshes"][0]["primitives"][0]["material"] = json!(0);
+        })
+    };
+    let light = |light: Value| {
+        glb(|glb| {
+            glb.json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [light] } });
+            glb.json["nodes"][0]["extensions"] = json!({ "KHR_lights_punctual": { "light": 0 } });
+        })
+    };
+    let camera = |yfov: f32| {
+        glb(|glb| {
+            glb.json["cameras"] =
+                json!([{ "type": "perspective", "perspective": { "yfov": yfov, "znear": 1.0 } }]);
+            glb.json["nodes"][0]["camera"] = json!(0);
+        })
+    };
+    let uri = |uri: &str| with("/buffers/0/uri", json!(uri));
+    let broken_png = format!("data:image/png;base64,{}", base64(&small_png()[..40]));
+    refuse_all(vec![
+        ("garbage-uri.glb", uri("data:garbage"), "buffers[0].uri: the data URI has no comma"),
+        ("not-base64.glb", uri("data:;base64,@@@@"), "not base64 at character 0"),
+        ("short-data.glb", uri("data:;base64,AAAA"), "claims 92 bytes, but 3 are there"),
+        ("http.glb", uri("https://example.org/a.bin"), "`https:` is not supported"),
+        ("climb.glb", uri("../../etc/passwd"), "leads out of"),
+        ("encoded-climb.glb", uri("%2e%2e/%2e%2e/etc/passwd"), "leads out of"),
+        ("absolute.glb", uri("/etc/passwd"), "leads out of"),
+        ("missing.glb", uri("missing.bin"), "cannot be opened"),
+        ("percent.glb", uri("%zz"), "not a valid URI"),
+        ("material.glb", with("/meshes/0/primitives/0/material", json!(4)), "materials[4]: names number 4"),
+        (
+            "missing-image.glb",
+            textured(json!({ "uri": "missing.png" })),
+            "images[0]: `missing.png` cannot be opened",
+        ),
+        (
+            "image-view.glb",
+            textured(json!({ "bufferView": 44, "mimeType": "image/png" })),
+            "names bufferViews[44]",
+        ),
+        (
+            "image-bytes.glb",
+            textured(json!({ "bufferView": 0, "mimeType": "image/png" })),
+            "none of PNG, JPEG",
+        ),
+        ("image-nothing.glb", textured(json!({})), "neither a uri nor a bufferView"),
+        ("broken-image.glb", textured(json!({ "uri": broken_png })), "images[0]"),
+        ("light.glb", light(json!({ "type": "neon" })), "unknown type"),
+        ("dark-light.glb", light(json!({ "type": "point", "intensity": -1.0 })), "not negative"),
+        ("spot.glb", light(json!({ "type": "spot" })), "spot without"),
+        ("cones.glb", light(json!({ "type": "spot", "spot": { "innerConeAngle": 2.0 } })), "cone angles"),
+        (
+            "far-light.glb",
+            with("/nodes/0/extensions", json!({ "KHR_lights_punctual": { "light": 3 } })),
+            "names number 3",
+        ),
+        ("flat-camera.glb", camera(0.0), "cameras[0].perspective.yfov"),
+        ("wide-camera.glb", camera(std::f32::consts::PI), "yfov"),
+        ("far-camera.glb", with("/nodes/0/camera", json!(3)), "nodes[0].camera: names number 3"),
+        ("draco.glb", with("/extensionsRequired", json!(["KHR_draco_mesh_compression"])), "not supported"),
+    ]);
+}
+
+/// An empty PNG file whose header claims a size.
+fn png_header(width: u32, height: u32) -> Vec<u8> {
+    let mut bytes = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR".to_vec();
+    bytes.extend(width.to_be_bytes());
+    bytes.extend(height.to_be_bytes());
+    bytes.extend([8, 6, 0, 0, 0]);
+    let checksum = crc32(&bytes[12..]);
+    bytes.extend(checksum.to_be_bytes());
+    // The decoder looks for the beginning of the data.
+    bytes.extend(b"\0\0\0\0IDAT");
+    bytes.extend(crc32(b"IDAT").to_be_bytes());
+    bytes
+}
+
+/// The checksum of PNG chunks (ISO 3309), bit by bit.
+fn crc32(bytes: &[u8]) -> u32 {
+    let step = |crc: u32| if crc & 1 == 1 { crc >> 1 ^ 0xedb8_8320 } else { crc >> 1 };
+    !bytes.iter().fold(!0u32, |crc, &byte| (0..8).fold(crc ^ u32::from(byte), |crc, _| step(crc)))
+}
+
+fn small_exr() -> Vec<u8> {
+    let picture = image::Rgb32FImage::from_fn(16, 16, |x, y| image::Rgb([x as f32, y as f32, 0.3]));
+    encode(DynamicImage::ImageRgb32F(picture), ImageFormat::OpenExr)
+}
+
+/// An EXR file with the value of an attribute overwritten from some byte on.
+fn exr_with(attribute: &str, skip: usize, value: &[u8]) -> Vec<u8> {
+    let mut bytes = small_exr();
+    let name = [attribute.as_bytes(), b"\0"].concat();
+    let start = bytes.windows(name.len()).position(|w| w == name).unwrap() + name.len();
+    let type_end = start + bytes[start..].iter().position(|&b| b == 0).unwrap() + 1;
+    let at = type_end + 4 + skip;
+    bytes[at..at + value.len()].copy_from_slice(value);
+    bytes
+}
+
+fn hdr(dimensions: &str) -> Vec<u8> {
+    format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n{dimensions}\n").into_bytes()
+}
+
+#[test]
+fn images() {
+    let (png, jpeg, exr) = (small_png(), small_jpeg(), small_exr());
+    let corner = |x: i32, y: i32| [x.to_le_bytes(), y.to_le_bytes()].concat();
+    refuse_all(vec![
+        ("empty.png", vec![], "is empty"),
+        ("text.png", b"hello".to_vec(), "none of PNG, JPEG, OpenEXR and Radiance"),
+        ("bmp.png", b"BM______________".to_vec(), "none of PNG"),
+        ("magic.png", png[..8].to_vec(), "image"),
+        ("half.png", png[..png.len() - 30].to_vec(), "image"),
+        ("zero.png", png_header(0, 5), "image"),
+        ("huge.png", png_header(60_000, 60_000), "60000"),
+        ("largest.png", png_header(0x7fff_ffff, 0x7fff_ffff), "image"),
+        ("bomb.png", png_header(16_000, 8_000), "but the file has only"),
+        (
+            "checksum.png",
+            {
+                let mut b = png.clone();
+                b[20] ^= 1;
+                b
+            },
+            "image",
+        ),
+        ("magic.jpg", vec![0xff, 0xd8], "is cut off"),
+        ("half.jpg", jpeg[..jpeg.len() / 2].to_vec(), "is cut off"),
+        ("tail.jpg", jpeg[..jpeg.len() - 2].to_vec(), "is cut off"),
+        ("nothing.jpg", vec![0xff, 0xd8, 0xff, 0xd9], "image"),
+        ("segment.jpg", vec![0xff, 0xd8, 0xff, 0xe0, 0, 0, 0xff, 0xd9], "without a length"),
+        ("no-marker.jpg", vec![0xff, 0xd8, 0x12, 0x34], "marker is expected"),
+        ("huge.jpg", jpeg_claiming(60_000, 60_000), "60000 × 60000"),
+        ("zero.jpg", jpeg_claiming(0, 0), "image"),
+        ("magic.exr", exr[..4].to_vec(), "image"),
+        ("half.exr", exr[..exr.len() / 2].to_vec(), "image"),
+        ("huge.exr", exr_with("dataWindow", 8, &corner(59_999, 59_999)), "60000 × 60000"),
+        ("bomb.exr", exr_with("dataWindow", 8, &corner(9_999, 9_999)), "image"),
+        ("inside-out.exr", exr_with("dataWindow", 8, &corner(-5, -5)), "image"),
+        ("far.exr", exr_with("dataWindow", 0, &corner(i32::MIN, i32::MIN)), "image"),
+        ("dwaa.exr", exr_with("compression", 0, &[8]), "DWAA or DWAB"),
+        ("dwab.exr", exr_with("compression", 0, &[9]), "DWAA or DWAB"),
+        ("no-code.exr", exr_with("compression", 0, &[99]), "image"),
+        ("no-colours.exr", exr_with("channels", 0, b"A"), "has no channels R, G, B and no Y"),
+        ("magic.hdr", b"#?RADIANCE".to_vec(), "image"),
+        ("huge.hdr", hdr("-Y 60000 +X 60000"), "60000 × 60000"),
+        ("overflow.hdr", hdr("-Y 4294967295 +X 4294967295"), "4294967295"),
+        ("bomb.hdr", hdr("-Y 8000 +X 8000"), "but the file has only"),
+        ("zero.hdr", hdr("-Y 0 +X 8"), "at least one"),
+        ("letters.hdr", hdr("-Y four +X 8"), "image"),
+        ("half.hdr", [hdr("-Y 8 +X 8"), vec![2, 2, 0, 8, 130]].concat(), "image"),
+    ]);
+}
+
+/// A JPEG whose frame header claims a size.
+fn jpeg_claiming(width: u16, height: u16) -> Vec<u8> {
+    let mut bytes = small_jpeg();
+    let frame = bytes.windows(2).position(|w| w == [0xff, 0xc0]).unwrap();
+    bytes[frame + 5..frame + 7].copy_from_slice(&height.to_be_bytes());
+    bytes[frame + 7..frame + 9].copy_from_slice(&width.to_be_bytes());
+    bytes
+}
+
+/// A scene file with a valid mesh and something after it.
+fn scene(rest: &str) -> String {
+    format!("[mesh]\npath = \"square.obj\"\nmillimetres_per_unit = 1.0\n{rest}\n")
+}
+
+/// A scene file with one light of a kind that has these lines.
+fn light(lines: &str) -> String {
+    scene(&format!("[[light]]\n{lines}"))
+}
+
+#[test]
+fn scene_files() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "square.obj", SQUARE_OBJ);
+    write(folder.path(), "cut.jpg", &small_jpeg()[..300]);
+    write(folder.path().parent().unwrap(), "cutis-outside.png", small_png());
+    std::fs::create_dir(folder.path().join("folder")).unwrap();
+    let outside = folder.path().join("link.png");
+    #[cfg(unix)]
+    std::os::unix::fs::symlink("/etc/hostname", &outside).unwrap();
+    let two_environments = "kind = \"environment\"\n[[light]]\nkind = \"environment\"";
+    let many_lights = "[[light]]\nkind = \"environment\"\n".repeat(1001);
+    let cases: Vec<(&str, String, &str)> = vec![
+        ("empty", String::new(), "key `mesh`: is missing"),
+        ("syntax", scene("[camera\n"), "line 4"),
+        ("table", "mesh = 5".to_owned(), "must be a table, found integer"),
+        ("no-path", "[mesh]\nflip_v = true".to_owned(), "key `mesh.path`: is missing"),
+        (
+            "no-file",
+            "[mesh]\npath = \"none.obj\"".to_owned(),
+            "line 2, key `mesh.path`: `none.obj` cannot be opened",
+        ),
+        ("folder", "[mesh]\npath = \"folder\"".to_owned(), "not a regular file"),
+        ("climb", "[mesh]\npath = \"../../x\"".to_owned(), "leads out of"),
+        ("absolute", "[mesh]\npath = \"/etc/passwd\"".to_owned(), "leads out of"),
+        ("empty-path", "[mesh]\npath = \"\"".to_owned(), "path is empty"),
+        ("zero-byte", "[mesh]\npath = \"a\\u0000b\"".to_owned(), "zero byte"),
+        ("assets-climb", "[mesh]\npath = \"assets:../x\"".to_owned(), "assets"),
+        ("recursion", "[mesh]\npath = \"recursion.toml\"".to_owned(), "`.toml` is not known"),
+        ("builtin", "[mesh]\nbuiltin = \"heart\"".to_owned(), "`heart` is not known"),
+        ("both", scene("builtin = \"head\""), "only one can be the mesh"),
+        ("unit", "[mesh]\npath = \"square.obj\"\nmillimetres_per_unit = -1".to_owned(), "must be above 0"),
+        (
+            "zero-unit",
+            "[mesh]\npath = \"square.obj\"\nmillimetres_per_unit = 0".to_owned(),
+            "must be above 0",
+        ),
+        ("nan-unit", "[mesh]\npath = \"square.obj\"\nmillimetres_per_unit = nan".to_owned(), "finite number"),
+        ("flip", scene("flip_v = \"yes\""), "line 4, key `mesh.flip_v`: must be true or false, found string"),
+        ("unknown-table", scene("[lamp]"), "key `lamp`: is not known; did you mean"),
+        (
+            "unknown-key",
+            scene("[material]\nalbdo = \"a.png\""),
+            "line 5, key `material.albdo`: is not known; did you mean `albedo`?",
+        ),
+        ("duplicate", scene("[material]\nf0 = 0.1\nf0 = 0.2"), "line 6"),
+        (
+            "missing-texture",
+            scene("[material]\nalbedo = \"none.png\""),
+            "line 5, key `material.albedo`: `none.png`",
+        ),
+        ("texture-climb", scene("[material]\nalbedo = \"../cutis-outside.png\""), "leads out of"),
+        ("texture-link", scene("[material]\nnormal = \"link.png\""), "link"),
+        (
+            "texture-type",
+            scene("[material]\nalbedo = 7"),
+            "must be a path or a list of three numbers, found integer",
+        ),
+        ("texture-format", scene("[material]\nalbedo = \"square.obj\""), "none of PNG"),
+        ("texture-cut", scene("[material]\nalbedo = \"cut.jpg\""), "is cut off"),
+        ("colour", scene("[material]\nalbedo = [1, 0.5]"), "three numbers, found 2"),
+        ("bright", scene("[material]\nalbedo = [2, 0, 0]"), "must be 0 to 1, got 2"),
+        ("words", scene("[material]\nalbedo = [1, \"a\", 0]"), "must be a number, found string"),
+        ("mix", scene("[material]\nalbedo_mix = 1.5"), "must be 0 to 1, got 1.5"),
+        ("f0", scene("[material]\nf0 = inf"), "must be a finite number"),
+        ("huge", scene("[material]\nf0 = 1e300"), "must be a finite number"),
+        ("space", scene("[material]\nnormal_space = \"world\""), "`world` is not known"),
+        ("lonely", scene("[material]\nnormal_strength = 2"), "has no `normal` to apply to"),
+        (
+            "channel",
+            scene("[material]\nspecular = { path = \"cut.jpg\", channel = \"z\" }"),
+            "`z` is not known",
+        ),
+        ("no-map", scene("[material]\nspecular = { gain = 1 }"), "key `material.specular.path`: is missing"),
+        ("roughness", scene("[material]\nroughness = 0"), "must be 0.01 to 1"),
+        ("tissue", scene("[material]\npreset = \"a\"\nmedium = {}"), "only one can be the tissue"),
+        (
+            "medium",
+            scene("[material]\nmedium = { sigma_a_per_mm = [0, 0, 0] }"),
+            "`material.medium.sigma_s_reduced_per_mm`: is missing",
+        ),
+        (
+            "negative",
+            scene("[material]\nmedium = { sigma_a_per_mm = [0, -1, 0] }"),
+            "must be 0 to 10000, got -1",
+        ),
+        (
+            "index",
+            scene(
+                "[material]\nmedium = { sigma_a_per_mm = [0, 0, 0], sigma_s_reduced_per_mm = [1, 1, 1], refractive_index = 0.5 }",
+            ),
+            "must be 1 to 3",
+        ),
+        ("kindless", light("intensity = 1"), "key `light[0].kind`: is missing"),
+        ("kind", light("kind = \"laser\""), "`laser` is not known"),
+        ("one-light", scene("[light]\nkind = \"point\""), "written [[light]]"),
+        ("nowhere", light("kind = \"point\""), "key `light[0].position_mm`: is missing"),
+        ("direction", light("kind = \"directional\"\ndirection = [0, 0, 0]"), "has no direction"),
+        ("dark", light("kind = \"point\"\nposition_mm = [0, 0, 1]\nintensity = -2"), "got -2"),
+        (
+            "cones",
+            light("kind = \"spot\"\nposition_mm = [0, 0, 1]\ndirection = [0, 0, 1]\ninner_cone_degrees = 60"),
+            "must be below outer_cone_degrees",
+        ),
+        ("point-key", light("kind = \"point\"\nposition = [0, 0, 1]"), "did you mean `position_mm`?"),
+        ("two", light(two_environments), "second environment"),
+        ("many", scene(&many_lights), "1001 lights"),
+        ("map", light("kind = \"environment\"\npath = \"none.hdr\""), "cannot be opened"),
+        (
+            "distance",
+            scene("[camera]\ndistance_mm = -900"),
+            "line 5, key `camera.distance_mm`: must be above 0",
+        ),
+        ("fov-0", scene("[camera]\nvertical_fov_degrees = 0"), "must be 0.1 to 170, got 0"),
+        ("fov-180", scene("[camera]\nvertical_fov_degrees = 180"), "must be 0.1 to 170, got 180"),
+        ("where", scene("[camera]\nposition_mm = [0, 0, 1]\ndistance_mm = 2"), "already says where"),
+        ("same", scene("[camera]\nposition_mm = [0, 0, 1]\nlook_at_mm = [0, 0, 1]"), "the camera looks at"),
+        ("deep", format!("a = {}", "[".repeat(100_000)), "line 1"),
+    ];
+    for (name, text, words) in cases {
+        refuse(&write(folder.path(), &format!("{name}.toml"), text), words);
+    }
+    refuse(&write(folder.path(), "latin.toml", b"# \n# \xe9\n"), "line 2: is not text in UTF-8");
+    refuse(&write(folder.path(), "long.toml", vec![b'#'; 1 << 21]), "a scene file has at most");
+    std::fs::remove_file(folder.path().parent().unwrap().join("cutis-outside.png")).unwrap();
+}
+
+#[test]
+fn folders_and_files_that_are_not_there() {
+    let folder = tempfile::tempdir().unwrap();
+    for extension in ["obj", "glb", "gltf", "toml", "png", "exr", "hdr", "jpg"] {
+        let missing = folder.path().join(format!("missing.{extension}"));
+        refuse(&missing, "cannot be opened");
+        let inside = folder.path().join(format!("folder.{extension}"));
+        std::fs::create_dir(&inside).unwrap();
+        refuse(&inside, "is a folder");
+    }
+    let device = PathBuf::from("/dev/zero");
+    if device.exists() {
+        let error = read_image(&device, ColourSpace::Data, &mut Vec::new()).unwrap_err();
+        assert!(error.reason.contains("not a regular file"), "{error}");
+    }
+}
+
+#[test]
+fn options_are_checked_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = write(folder.path(), "square.obj", SQUARE_OBJ);
+    for mm in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        let options = ReadOptions { millimetres_per_unit: Some(mm), ..ReadOptions::default() };
+        let error = read_scene(&path, &options).unwrap_err();
+        assert_eq!(error.place, "millimetres_per_unit");
+    }
+    let albedo = Some(folder.path().join("none.png"));
+    let error = read_scene(&path, &ReadOptions { albedo, ..ReadOptions::default() }).unwrap_err();
+    assert!(error.file.contains("none.png"), "{error}");
+}

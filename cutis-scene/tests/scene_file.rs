@@ -1,0 +1,112 @@
+//! Scene files: every key arrives where it belongs.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod common;
+
+use common::{SQUARE_OBJ, small_png, write};
+use cutis_scene::{Light, NormalSpace, ReadOptions, Scattering, Scene, read_scene};
+use glam::{Vec2, Vec3};
+use std::path::Path;
+
+fn scene_in(folder: &Path, text: &str) -> Scene {
+    write(folder, "square.obj", SQUARE_OBJ);
+    write(folder, "map.png", small_png());
+    let path = write(folder, "scene.toml", text);
+    read_scene(&path, &ReadOptions::default()).unwrap()
+}
+
+const MESH: &str = "[mesh]\npath = \"square.obj\"\nmillimetres_per_unit = 2\n";
+
+#[test]
+fn mesh_keys_arrive() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene_in(folder.path(), &format!("{MESH}flip_v = true\n"));
+    assert_eq!(scene.bounds_mm().unwrap()[1], Vec3::new(200.0, 200.0, 0.0));
+    assert_eq!(scene.objects[0].mesh.uvs[0], Vec2::ZERO);
+}
+
+#[test]
+fn the_callers_unit_and_textures_go_before_those_of_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    scene_in(folder.path(), MESH);
+    let elsewhere = tempfile::tempdir().unwrap();
+    let options = ReadOptions {
+        millimetres_per_unit: Some(3.0),
+        albedo: Some(write(elsewhere.path(), "a.png", small_png())),
+        normal: Some(write(elsewhere.path(), "n.png", small_png())),
+        specular: Some(write(elsewhere.path(), "s.png", small_png())),
+        ..ReadOptions::default()
+    };
+    let scene = read_scene(&folder.path().join("scene.toml"), &options).unwrap();
+    assert_eq!(scene.bounds_mm().unwrap()[1].x, 300.0);
+    let material = &scene.objects[0].material;
+    assert!(material.albedo.texture.is_some() && material.normal.is_some());
+    assert!((material.rho_s.at(Vec2::ZERO) - (0.18 + 0.16 * 200.0 / 255.0)).abs() < 1e-6);
+}
+
+#[test]
+fn material_keys_arrive() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!(
+        "{MESH}[material]\nmedium = {{ sigma_a_per_mm = [0.032, 0.17, 0.48], sigma_s_reduced_per_mm = [0.74, 0.88, \
+         1.01], refractive_index = 1.3 }}\nalbedo = \"map.png\"\nalbedo_colour = [0.5, 1, 1]\nalbedo_mix = 1\n\
+         normal = \"map.png\"\nnormal_space = \"object\"\nnormal_strength = 0.5\nf0 = 0.04\nroughness = 0.4\n\
+         specular = {{ path = \"map.png\", channel = \"green\", offset = 0.1, gain = 2 }}\n"
+    );
+    let material = scene_in(folder.path(), &text).objects.remove(0).material;
+    let Scattering::Medium(medium) = &material.scattering else { panic!("a medium") };
+    assert_eq!(medium[1].sigma_a_per_mm, 0.17);
+    assert_eq!((medium[2].sigma_s_reduced_per_mm, medium[0].refractive_index), (1.01, 1.3));
+    assert_eq!((material.albedo.factor, material.albedo_mix), (Vec3::new(0.5, 1.0, 1.0), 1.0));
+    let normal = material.normal.unwrap();
+    assert_eq!((normal.space, normal.strength), (NormalSpace::Object, 0.5));
+    assert!((material.rho_s.at(Vec2::ZERO) - (0.1 + 200.0 / 255.0)).abs() < 1e-6);
+    assert_eq!((material.roughness.at(Vec2::ZERO), material.f0), (0.4, 0.04));
+}
+
+#[test]
+fn light_keys_arrive() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!(
+        "{MESH}[[light]]\nkind = \"point\"\nposition_mm = [1, 2, 3]\ncolour = [1, 0.5, 0]\nintensity = 2\n\
+         radius_mm = 4\n[[light]]\nkind = \"spot\"\nposition_mm = [0, 0, 9]\ndirection = [0, 0, -5]\n\
+         inner_cone_degrees = 10\nouter_cone_degrees = 20\n[[light]]\nkind = \"directional\"\n\
+         direction = [0, -2, 0]\nangular_radius_degrees = 0.5\n[[light]]\nkind = \"environment\"\nvisible = true\n\
+         rotation_degrees = 180\nintensity = 0.5\n"
+    );
+    let scene = scene_in(folder.path(), &text);
+    let point = Light::Point {
+        position_mm: Vec3::new(1.0, 2.0, 3.0),
+        intensity_w_per_sr: Vec3::new(2.0, 1.0, 0.0),
+        radius_mm: 4.0,
+    };
+    assert_eq!(scene.lights[0], point);
+    assert!(matches!(scene.lights[1], Light::Spot { dir_travel, .. } if dir_travel == -Vec3::Z));
+    assert!(matches!(scene.lights[2], Light::Directional { dir_to_light, .. } if dir_to_light == Vec3::Y));
+    let environment = scene.environment.unwrap();
+    assert!(environment.visible && (environment.rotation_rad - std::f32::consts::PI).abs() < 1e-6);
+    assert_eq!(environment.radiance_scale, Vec3::splat(0.5));
+}
+
+#[test]
+fn camera_keys_arrive_and_the_rest_follows_from_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!(
+        "{MESH}[camera]\nlook_at_mm = [1, 2, 3]\ndistance_mm = 900\nyaw_degrees = 90\nvertical_fov_degrees = 30\n\
+         exposure_ev = 1.5\n"
+    );
+    let camera = scene_in(folder.path(), &text).camera;
+    assert!((camera.position_mm - Vec3::new(901.0, 2.0, 3.0)).length() < 1e-3, "{}", camera.position_mm);
+    assert!((camera.vertical_fov_rad - 30f32.to_radians()).abs() < 1e-6 && camera.exposure_ev == 1.5);
+    let camera = scene_in(folder.path(), &format!("{MESH}[camera]\nposition_mm = [0, 0, 700]\n")).camera;
+    assert_eq!((camera.position_mm, camera.look_at_mm), (Vec3::Z * 700.0, Vec3::new(100.0, 100.0, 0.0)));
+}
+
+#[test]
+fn a_folder_below_the_scene_may_be_used_and_dots_that_stay_inside_too() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("maps")).unwrap();
+    write(folder.path(), "maps/a.png", small_png());
+    let text = format!("{MESH}[material]\nalbedo = \"./maps/../maps/a.png\"\n");
+    assert!(scene_in(folder.path(), &text).objects[0].material.albedo.texture.is_some());
+}

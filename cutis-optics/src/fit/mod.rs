@@ -12,7 +12,6 @@
 //! closed form, but an error of 1e-6 would be the difference of numbers equal to twelve digits.
 
 mod frequency_grid;
-mod insertion;
 mod levenberg_marquardt;
 mod problem;
 mod rgb;

@@ -141,6 +141,15 @@ mod tests {
             }
         }
 
+        /// Weights that are truly zero come out as plus or minus rounding; a minus must not get through.
+        #[test]
+        fn weights_of_zero_never_come_out_negative(numbers in prop::collection::vec(-1.0..1.0_f64, 40)) {
+            let a = DMatrix::from_column_slice(8, 5, &numbers);
+            let b = &a * DVector::from_column_slice(&[1.0, 0.0, 2.0, 0.0, 3.0]);
+            let s = solve(&a, &b, SignRule::NotNegative).unwrap();
+            prop_assert!(s.weights.iter().all(|&w| w >= 0.0), "{:?}", s.weights);
+        }
+
         #[test]
         fn free_residual_is_orthogonal_to_the_columns(numbers in prop::collection::vec(-1.0..1.0_f64, 48)) {
             let a = DMatrix::from_column_slice(8, 5, &numbers[..40]);

@@ -61,6 +61,8 @@ fn energy_fit_keeps_energy_sign_and_nearly_the_error() {
                 let (kept, free) = (kept.relative_rms_power_error, free.relative_rms_power_error);
                 // A constraint can only cost; the optimiser's own slack is 1e-9.
                 assert!(kept > free * (1.0 - 1e-6), "{name} {count}: {kept} below {free}");
+                // Seen: 1.05 to 1.5 with four and more. A fit stuck in a poor minimum is off by ten or more.
+                assert!(count == 1 || kept < 1.6 * free, "{name} {count}: {kept} far above {free}");
             }
         }
     }

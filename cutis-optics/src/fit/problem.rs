@@ -240,6 +240,16 @@ mod tests {
     }
 
     #[test]
+    fn energy_row_leaves_next_to_nothing_for_the_final_scaling() {
+        let dipole = Dipole::new(&Medium::new(0.0041, 2.62, 1.5).unwrap()).unwrap();
+        let problem = Problem::new(&[&dipole], FitMethod::Energy).unwrap();
+        let solution = problem.solve(&[-3.3, -1.9, -0.1, 1.9]).unwrap();
+        let raw: f64 = solution.channels[0].squares.weights.iter().sum::<f64>() * problem.targets[0].norm;
+        // Free weights lose 5 %; of that 1/ENERGY² is left, and the columns are of norm 1 to 10.
+        assert!((raw / dipole.total() - 1.0).abs() < 1e-6, "{raw} against {}", dipole.total());
+    }
+
+    #[test]
     fn energy_row_is_kept_and_free_weights_lose_energy() {
         let dipole = Dipole::new(&Medium::new(0.0041, 2.62, 1.5).unwrap()).unwrap();
         let sum = |method| {

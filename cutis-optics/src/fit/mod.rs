@@ -73,7 +73,7 @@ pub enum FitError {
         /// Its value at frequency 0.
         total: f64,
     },
-    /// No start led to finite numbers.
+    /// No start led to finite numbers: seen only where channels differ in scale by some sixteen decades.
     #[error("no start of the optimiser led to a finite error with {count} Gaussians")]
     NoSolution {
         /// The number asked for.

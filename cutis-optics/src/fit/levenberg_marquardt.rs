@@ -19,7 +19,7 @@ const DAMPING_FIRST: f64 = 1e-3;
 /// Longest step of one ln v: a factor e in the variance; beyond, the quadratic model is a fairy tale.
 const STEP_MAX: f64 = 1.0;
 
-/// Walks downhill from `start`, under its sign rule, until nothing is gained any more.
+/// Walks downhill from `start` until nothing is gained any more.
 pub(super) fn descend(problem: &Problem, start: Solution) -> Solution {
     let mut here = start;
     let (mut damping, mut growth) = (DAMPING_FIRST, 2.0);
@@ -30,7 +30,7 @@ pub(super) fn descend(problem: &Problem, start: Solution) -> Solution {
         if step.amax() < STEP_MIN || (damping < DAMPING_CALM && expected <= GAIN_MIN * here.cost) {
             break;
         }
-        let there = problem.solve(&moved(problem, &here.ln_variances, &step), here.rule);
+        let there = problem.solve(&moved(problem, &here.ln_variances, &step));
         match there.filter(|there| there.cost < here.cost) {
             Some(there) => {
                 let ratio = (here.cost - there.cost) / expected;
@@ -97,7 +97,7 @@ mod tests {
         let sum = GaussianSum::new([(0.2, 0.03), (0.3, 0.4), (0.4, 2.0)].map(term).to_vec());
         for method in [FitMethod::Optimal, FitMethod::Energy] {
             let problem = Problem::new(&[&sum], method).unwrap();
-            let end = descend(&problem, problem.solve(&[-2.0, 0.0, 1.5], problem.sign_rule()).unwrap());
+            let end = descend(&problem, problem.solve(&[-2.0, 0.0, 1.5]).unwrap());
             // The cost is quadratic around the truth; steps stop when it falls no more, at rounding.
             assert!(end.cost < 1e-18, "{}", end.cost);
             for (found, truth) in end.variances_mm2().iter().zip([0.03, 0.4, 2.0]) {

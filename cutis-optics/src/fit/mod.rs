@@ -12,7 +12,6 @@
 //! closed form, but an error of 1e-6 would be the difference of numbers equal to twelve digits.
 
 mod frequency_grid;
-mod insertion;
 mod levenberg_marquardt;
 mod problem;
 mod rgb;
@@ -74,7 +73,7 @@ pub enum FitError {
         /// Its value at frequency 0.
         total: f64,
     },
-    /// No start led to finite numbers.
+    /// No start led to finite numbers: seen only where channels differ in scale by some sixteen decades.
     #[error("no start of the optimiser led to a finite error with {count} Gaussians")]
     NoSolution {
         /// The number asked for.

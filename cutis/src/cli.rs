@@ -122,9 +122,12 @@ pub struct RenderArgs {
     /// Latitude-longitude map that lights the scene from all around (.exr or .hdr), instead of its own
     #[arg(long, value_name = "FILE")]
     pub environment: Option<PathBuf>,
-    /// Triangles of the built-in head, about [1000 to 4000000, default 200000]
+    /// Triangles of the built-in head, about [1000 to 4000000, default 100000]
     #[arg(long, value_name = "N")]
     pub triangles: Option<usize>,
+    /// Width and height of the built-in head's maps; 0: no maps [texels, 0 to 8192, default 2048]
+    #[arg(long, value_name = "N")]
+    pub map_size: Option<u32>,
 }
 
 /// Arguments of `cutis presets`.
@@ -189,6 +192,7 @@ mod tests {
     use super::*;
     use clap::CommandFactory;
     use cutis_render::film::Film;
+    use cutis_scene::head::HeadDetail;
 
     #[test]
     fn the_definition_is_sound() {
@@ -196,13 +200,16 @@ mod tests {
     }
 
     #[test]
-    fn defaults_in_the_help_are_those_of_the_film() {
+    fn defaults_in_the_help_are_those_of_the_libraries() {
         let film = Film::default();
         let help = Cli::command().find_subcommand("render").map(|c| c.clone().render_long_help().to_string());
-        let help = help.expect("there is a render command");
+        let help = help.expect("there is a render command").split_whitespace().collect::<Vec<_>>().join(" ");
         let strength = film.bloom.map_or(0.0, |bloom| bloom.strength);
         assert!(help.contains(&format!("0 to 1, default {strength}")), "{help}");
         assert!(help.contains(&format!("[default: {}]", film.tone_mapper)), "{help}");
+        let head = HeadDetail::default();
+        assert!(help.contains(&format!("4000000, default {}", head.triangles)), "{help}");
+        assert!(help.contains(&format!("8192, default {}", head.map_size)), "{help}");
         assert!(help.contains(&format!("-32 to 32, default {}", film.exposure_ev)), "{help}");
     }
 

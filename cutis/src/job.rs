@@ -5,12 +5,10 @@ use crate::scene_source::SceneSource;
 use cutis_render::film::{Bloom, Film, Format, check_output, layer_path};
 use cutis_render::{Aov, Settings};
 use cutis_scene::ReadOptions;
+use cutis_scene::head::HeadDetail;
 use miette::{Result, miette};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
-
-/// Triangles of the built-in head, if nobody says otherwise.
-const HEAD_TRIANGLES: usize = 200_000;
 
 /// Everything `cutis render` needs to know.
 #[derive(Debug, Clone)]
@@ -53,6 +51,9 @@ fn check_backend(name: &str) -> Result<()> {
             help = "leave --backend out, or say cpu",
             "this build of cutis has no GPU backend"
         ));
+    }
+    if name == "auto" {
+        tracing::info!("backend auto: the processor, this build has no other");
     }
     Ok(())
 }
@@ -108,11 +109,7 @@ fn source(args: &RenderArgs) -> Result<SceneSource> {
             millimetres.unwrap_or_default()
         ));
     }
-    if args.scene.is_some() && args.triangles.is_some() {
-        return Err(miette!("--triangles is for the built-in head; a scene file has the triangles it has"));
-    }
-    let triangles = args.triangles.unwrap_or(HEAD_TRIANGLES);
-    let triangles = in_range("--triangles", triangles, 1000..=4_000_000, "1000 to 4000000")?;
+    let detail = head_detail(args)?;
     let maps = [&args.albedo, &args.normal, &args.specular, &args.environment];
     maps.into_iter().chain([&args.scene]).flatten().try_for_each(|path| must_exist(path))?;
     let options = ReadOptions {
@@ -122,7 +119,21 @@ fn source(args: &RenderArgs) -> Result<SceneSource> {
         specular: args.specular.clone(),
         ..ReadOptions::default()
     };
-    Ok(SceneSource { file: args.scene.clone(), options, environment: args.environment.clone(), triangles })
+    Ok(SceneSource { file: args.scene.clone(), options, environment: args.environment.clone(), detail })
+}
+
+fn head_detail(args: &RenderArgs) -> Result<HeadDetail> {
+    if args.scene.is_some() && (args.triangles.is_some() || args.map_size.is_some()) {
+        return Err(miette!(
+            "--triangles and --map-size are for the built-in head; a scene file has what it has"
+        ));
+    }
+    let HeadDetail { triangles, map_size } = HeadDetail::default();
+    let triangles = args.triangles.unwrap_or(triangles);
+    let triangles = in_range("--triangles", triangles, 1000..=4_000_000, "1000 to 4000000")?;
+    let map_size = args.map_size.unwrap_or(map_size);
+    in_range("--map-size", map_size as usize, 0..=8192, "0 to 8192 texels")?;
+    Ok(HeadDetail { triangles, map_size })
 }
 
 /// Finds a missing file before the work; the reader says everything else that may be wrong with it.

@@ -1,6 +1,6 @@
 //! Where the scene comes from: a file, or the head that ships inside.
 
-use cutis_scene::head;
+use cutis_scene::head::{self, HeadDetail};
 use cutis_scene::studio::{studio_environment, studio_lights};
 use cutis_scene::{
     Camera, ColourMap, ColourSpace, Environment, NormalMap, NormalSpace, ReadOptions, ScalarMap, Scene,
@@ -22,8 +22,8 @@ pub struct SceneSource {
     pub options: ReadOptions,
     /// Map that takes the place of the scene's environment.
     pub environment: Option<PathBuf>,
-    /// Triangles of the built-in head, about.
-    pub triangles: usize,
+    /// How fine the built-in head is.
+    pub detail: HeadDetail,
 }
 
 impl SceneSource {
@@ -46,7 +46,7 @@ impl SceneSource {
 
     /// The built-in head in the studio.
     fn built_in_head(&self) -> Result<Scene, SceneError> {
-        let object = head::built_in(self.triangles);
+        let object = head::built_in(self.detail);
         let bounds_mm = object.mesh.bounds_mm().unwrap_or_default();
         let mut scene = Scene {
             objects: vec![object],

@@ -1,7 +1,7 @@
 //! Results to stdout, talk to stderr. Neither a closed pipe nor a closed stderr stops a run.
 
 use miette::{IntoDiagnostic, Report};
-use std::io::{ErrorKind, Write, stderr, stdout};
+use std::io::{ErrorKind, IsTerminal, Write, stderr, stdout};
 use tracing::level_filters::LevelFilter;
 
 /// Starts the log on stderr: warnings, with `-v` what is done, with `-vv` how.
@@ -13,7 +13,7 @@ pub fn start(verbose: u8) {
         _ => LevelFilter::TRACE,
     };
     let log = tracing_subscriber::fmt().with_writer(stderr).with_max_level(level);
-    log.without_time().with_target(false).init();
+    log.with_ansi(stderr().is_terminal()).without_time().with_target(false).init();
 }
 
 /// Prints a result on stdout, and the end of its line. A reader that went away has what it wanted.

@@ -120,6 +120,17 @@ fn a_failed_run_leaves_the_old_picture() {
 }
 
 #[test]
+fn talk_in_a_log_is_plain_lines_one_per_pass() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = run(folder.path(), &[&TINY[..], &["-v"]].concat());
+    let said = stderr(&output);
+    assert!(!said.contains('\u{1b}'), "{said:?}");
+    assert_eq!(said.lines().filter(|line| line.trim() == "INFO resolve").count(), 1, "{said}");
+    assert!(said.contains("backend auto"), "{said}");
+    assert_eq!(stderr(&run(folder.path(), &TINY)), "", "no bar where nobody can see it");
+}
+
+#[test]
 fn wishes_without_effect_are_told() {
     let folder = tempfile::tempdir().expect("a folder");
     let output = run(folder.path(), &[&TINY[..], &["-o", "a.exr", "--exposure-ev", "-1"]].concat());

@@ -185,6 +185,14 @@ mod tests {
         assert_eq!(names(folder.path()), ["b.png"], "looking leaves nothing behind");
     }
 
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_folder_that_takes_no_files_is_found_out() {
+        // Nobody, not even root, creates files in /proc.
+        let error = check_output(Path::new("/proc/a.png"), None).expect_err("refused");
+        assert!(matches!(error, FilmError::NotWritable { .. }), "{error}");
+    }
+
     #[test]
     fn broken_pixels_are_counted() {
         let folder = tempfile::tempdir().expect("a folder");

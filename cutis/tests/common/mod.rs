@@ -5,7 +5,7 @@ use std::process::{Command, Output};
 
 /// Small enough for a test: a picture of a few thousand pixels with the least of everything.
 #[allow(dead_code, reason = "not every test file renders")]
-pub const TINY: [&str; 11] = [
+pub const TINY: [&str; 13] = [
     "render",
     "--size",
     "48x40",
@@ -17,6 +17,8 @@ pub const TINY: [&str; 11] = [
     "4",
     "--triangles",
     "2000",
+    "--map-size",
+    "64",
 ];
 
 /// The program, in a folder.

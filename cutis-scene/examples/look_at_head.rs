@@ -2,6 +2,7 @@
 //!
 //! `cargo run --release -p cutis-scene --example look_at_head -- [folder] [triangles] [clay|skin]`
 
+use cutis_scene::head::{HeadDetail, built_in};
 use cutis_scene::{Bvh, Object, SurfacePoint};
 use glam::{Mat3, Vec3};
 use rayon::prelude::*;
@@ -44,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let only = arguments.next();
     std::fs::create_dir_all(&folder)?;
     let start = std::time::Instant::now();
-    let head = cutis_scene::head::built_in(triangles);
+    let head = built_in(HeadDetail { triangles, ..HeadDetail::default() });
     eprintln!(
         "{} triangles, {} vertices, {} charts, closed {}, {:.2} s",
         head.mesh.triangles.len(),
@@ -62,6 +63,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         image.save(Path::new(&folder).join(format!("{}.png", view.name)))?;
         image::imageops::replace(&mut sheet, &image, i64::from(i % 4 * WIDTH), i64::from(i / 4 * HEIGHT));
     }
+    layout(&objects[0]).save(Path::new(&folder).join("uv.png"))?;
     sheet.save(Path::new(&folder).join("sheet.png"))?;
     Ok(())
 }
@@ -143,4 +145,27 @@ fn random_direction(seed: u32) -> Vec3 {
     let (z, angle) = (2.0 * hash(seed) - 1.0, std::f32::consts::TAU * hash(seed ^ 0x9e37_79b9));
     let r = (1.0 - z * z).max(0.0).sqrt();
     Vec3::new(r * angle.cos(), r * angle.sin(), z)
+}
+
+/// The charts of the texture, each in its colour, with the edges of every triangle darker.
+fn layout(head: &Object) -> image::RgbImage {
+    const SIZE: f32 = 1400.0;
+    let mut image = image::RgbImage::new(SIZE as u32, SIZE as u32);
+    for t in 0..head.mesh.triangles.len() {
+        let c = head.mesh.corner_uvs(t).map(|uv| uv * SIZE - 0.5);
+        let hue = head.charts.of_triangle[t].wrapping_mul(0x9e37_79b9).to_be_bytes();
+        let colour = image::Rgb([90 + hue[0] / 2, 90 + hue[1] / 2, 90 + hue[2] / 2]);
+        let (lo, hi) = (c[0].min(c[1]).min(c[2]).ceil(), c[0].max(c[1]).max(c[2]));
+        let area = (c[1] - c[0]).perp_dot(c[2] - c[0]);
+        for y in lo.y as u32..=hi.y.min(SIZE - 1.0) as u32 {
+            for x in lo.x as u32..=hi.x.min(SIZE - 1.0) as u32 {
+                let p = glam::Vec2::new(x as f32, y as f32);
+                let inside = |i: usize| (c[(i + 1) % 3] - c[i]).perp_dot(p - c[i]) / area >= 0.0;
+                if (0..3).all(inside) {
+                    image.put_pixel(x, y, colour);
+                }
+            }
+        }
+    }
+    image
 }

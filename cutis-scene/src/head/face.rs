@@ -68,7 +68,7 @@ impl Face {
     /// The head `d` at `p` with its features, mm.
     pub fn add_to(&self, d: f32, p: Vec3) -> f32 {
         // Behind the temples there is nothing to add.
-        if p.z < 20.0 || d > 45.0 {
+        if p.z < 20.0 || d > 32.0 {
             return d;
         }
         let side = Vec3::new(soft_abs(p.x, 2.0), p.y, p.z);

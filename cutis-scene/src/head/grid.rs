@@ -27,13 +27,20 @@ impl Grid {
         let [lo, hi] = BOUNDS_MM;
         let blocks = ((hi - lo) / (cell_mm * BLOCK as f32)).ceil().as_uvec3();
         let nodes = blocks * BLOCK;
+        // Even about x = 0, so that one half is the mirror image of the other.
+        let origin_mm = Vec3::new(-0.5 * (nodes.x - 1) as f32 * cell_mm, lo.y, lo.z);
         let layer = (nodes.x * nodes.y * BLOCK) as usize;
-        let mut grid = Self { cell_mm, origin_mm: lo, nodes, values_mm: vec![0.0; layer * blocks.z as usize] };
+        let mut grid = Self { cell_mm, origin_mm, nodes, values_mm: vec![0.0; layer * blocks.z as usize] };
         let mut values = std::mem::take(&mut grid.values_mm);
         values.par_chunks_mut(layer).enumerate().for_each(|(bz, values)| {
             for by in 0..blocks.y {
-                for bx in 0..blocks.x {
+                for bx in blocks.x / 2..blocks.x {
                     grid.sample_block(sculpture, UVec3::new(bx, by, bz as u32), values);
+                }
+            }
+            for row in values.chunks_exact_mut(nodes.x as usize) {
+                for x in 0..row.len() / 2 {
+                    row[x] = row[row.len() - 1 - x];
                 }
             }
         });
@@ -63,11 +70,6 @@ impl Grid {
     /// Where a node is, mm.
     pub fn position_mm(&self, node: UVec3) -> Vec3 {
         self.origin_mm + node.as_vec3() * self.cell_mm
-    }
-
-    /// Index of a node.
-    pub fn index(&self, node: UVec3) -> usize {
-        ((node.z * self.nodes.y + node.y) * self.nodes.x + node.x) as usize
     }
 
     /// Index steps to the eight corners of a cell, x fastest.

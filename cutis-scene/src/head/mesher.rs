@@ -27,8 +27,44 @@ pub fn surface_nets(sculpture: &Sculpture, cell_mm: f32) -> Surface {
         vertex_of_cell[cell] = v as u32;
     }
     let points_mm = cells.par_iter().map(|&cell| sculpture.project(centre_of_crossings(&grid, cell), 1)).collect();
-    let triangles = cells.iter().flat_map(|&cell| triangles_at(&grid, cell, &vertex_of_cell)).collect();
-    Surface { points_mm, triangles }
+    let triangles: Vec<_> = cells.iter().flat_map(|&cell| triangles_at(&grid, cell, &vertex_of_cell)).collect();
+    largest_piece(Surface { points_mm, triangles })
+}
+
+/// Drops crumbs: bubbles of a few cells that soft cuts may leave inside the head.
+fn largest_piece(surface: Surface) -> Surface {
+    let piece_of = pieces_of_points(&surface);
+    let mut sizes = vec![0usize; surface.points_mm.len()];
+    piece_of.iter().for_each(|&p| sizes[p as usize] += 1);
+    let largest = (0..sizes.len()).max_by_key(|&p| sizes[p]).unwrap_or(0) as u32;
+    let mut number = vec![0u32; surface.points_mm.len()];
+    let mut kept = Surface::default();
+    for (i, &p) in surface.points_mm.iter().enumerate().filter(|(i, _)| piece_of[*i] == largest) {
+        number[i] = kept.points_mm.len() as u32;
+        kept.points_mm.push(p);
+    }
+    let whole = surface.triangles.iter().filter(|c| piece_of[c[0] as usize] == largest);
+    kept.triangles = whole.map(|c| c.map(|i| number[i as usize])).collect();
+    kept
+}
+
+/// For each point the smallest point number of its piece.
+fn pieces_of_points(surface: &Surface) -> Vec<u32> {
+    let mut parent: Vec<u32> = (0..surface.points_mm.len() as u32).collect();
+    let root = |parent: &mut [u32], mut i: u32| {
+        while parent[i as usize] != i {
+            parent[i as usize] = parent[parent[i as usize] as usize];
+            i = parent[i as usize];
+        }
+        i
+    };
+    for [a, b, c] in &surface.triangles {
+        for other in [b, c] {
+            let (i, j) = (root(&mut parent, *a), root(&mut parent, *other));
+            parent[i.max(j) as usize] = i.min(j);
+        }
+    }
+    (0..parent.len() as u32).map(|i| root(&mut parent, i)).collect()
 }
 
 /// Mean of the places where the surface crosses the cell's edges, mm.

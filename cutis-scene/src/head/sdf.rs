@@ -53,40 +53,82 @@ pub fn pitch(degrees: f32) -> Mat3 {
 
 /// A tube of changing radius along a smooth curve.
 pub struct Sweep {
-    /// Points on the curve and the radius there, mm.
-    beads: Vec<(Vec3, f32)>,
-    lo: Vec3,
-    hi: Vec3,
+    spans: Vec<Span>,
+    bounds: [Vec3; 2],
+}
+
+/// A few consecutive pieces of a sweep and the box around them.
+struct Span {
+    pieces: Vec<Piece>,
+    bounds: [Vec3; 2],
+}
+
+/// A straight piece: a cone with round ends.
+struct Piece {
+    start: Vec3,
+    along: Vec3,
+    inverse_square: f32,
+    radius: f32,
+    widening: f32,
 }
 
 impl Sweep {
     /// A tube through `knots` (x, y, z, radius; mm), eight straight pieces between two knots.
     pub fn new(knots: &[[f32; 4]]) -> Self {
-        Self::with_pieces(knots, 8)
-    }
-
-    /// The same with a chosen number of pieces between two knots.
-    pub fn with_pieces(knots: &[[f32; 4]], pieces: usize) -> Self {
         let beads: Vec<_> =
-            spline(knots, pieces).into_iter().map(|k| (Vec3::new(k[0], k[1], k[2]), k[3])).collect();
-        let lo = beads.iter().fold(Vec3::MAX, |m, (p, r)| m.min(*p - *r));
-        let hi = beads.iter().fold(Vec3::MIN, |m, (p, r)| m.max(*p + *r));
-        Self { beads, lo, hi }
+            spline(knots, 8).into_iter().map(|k| (Vec3::new(k[0], k[1], k[2]), k[3])).collect();
+        let spans = (0..beads.len() - 1)
+            .step_by(4)
+            .map(|i| span(&beads[i..(i + 5).min(beads.len())]))
+            .collect();
+        Self { spans, bounds: bounds(&beads) }
     }
 
     /// Distance to the tube; further than `reach_mm` from its box only the distance to the box.
     pub fn distance(&self, p: Vec3, reach_mm: f32) -> f32 {
-        let outside = (self.lo - p).max(p - self.hi).max(Vec3::ZERO).length();
+        let outside = to_box(p, &self.bounds);
         if outside > reach_mm {
             return outside;
         }
-        self.beads.windows(2).fold(f32::MAX, |best, pair| {
-            let ((a, ra), (b, rb)) = (pair[0], pair[1]);
-            let ab = b - a;
-            let t = ((p - a).dot(ab) / ab.length_squared()).clamp(0.0, 1.0);
-            best.min((p - a - ab * t).length() - (ra + (rb - ra) * t))
+        self.spans.iter().fold(f32::MAX, |best, span| {
+            // Inside a box the tube may be nearer than the box: only boxes off the point are skipped.
+            if to_box(p, &span.bounds) > best.max(0.0) {
+                return best;
+            }
+            span.pieces.iter().fold(best, |best, piece| best.min(piece.distance(p)))
         })
     }
+}
+
+impl Piece {
+    fn distance(&self, p: Vec3) -> f32 {
+        let q = p - self.start;
+        let t = (q.dot(self.along) * self.inverse_square).clamp(0.0, 1.0);
+        (q - self.along * t).length() - (self.radius + self.widening * t)
+    }
+}
+
+fn span(beads: &[(Vec3, f32)]) -> Span {
+    let pieces = beads.windows(2).map(|pair| {
+        let ((start, radius), (end, end_radius)) = (pair[0], pair[1]);
+        let along = end - start;
+        Piece {
+            start,
+            along,
+            inverse_square: along.length_squared().max(1e-12).recip(), // two knots in one place: no direction
+            radius,
+            widening: end_radius - radius,
+        }
+    });
+    Span { pieces: pieces.collect(), bounds: bounds(beads) }
+}
+
+fn bounds(beads: &[(Vec3, f32)]) -> [Vec3; 2] {
+    beads.iter().fold([Vec3::MAX, Vec3::MIN], |[lo, hi], &(p, r)| [lo.min(p - r), hi.max(p + r)])
+}
+
+fn to_box(p: Vec3, [lo, hi]: &[Vec3; 2]) -> f32 {
+    (*lo - p).max(p - *hi).max(Vec3::ZERO).length()
 }
 
 /// A curve in a plane, open or closed.

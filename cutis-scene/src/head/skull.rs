@@ -34,8 +34,8 @@ impl Skull {
         let side = Vec3::new(soft_abs(p.x, 3.0), p.y, p.z);
         let mut d = cranium(p);
         d = soft_union(d, face_block(p), 22.0);
-        d = soft_union(d, self.jaw.distance(side, 40.0), 20.0);
-        d = soft_union(d, self.cheekbone.distance(side, 30.0), 16.0);
+        d = soft_union(d, self.jaw.distance(side, 26.0), 20.0);
+        d = soft_union(d, self.cheekbone.distance(side, 24.0), 16.0);
         d = soft_union(d, ellipsoid(p - Vec3::new(0.0, -101.0, 77.0), Vec3::new(15.0, 13.0, 13.0)), 12.0);
         d + clay(side)
     }

@@ -44,7 +44,7 @@ impl Default for Settings {
             irradiance_size: 2048,
             gaussians: 6,
             shadow_samples: 4,
-            ambient_samples: 64,
+            ambient_samples: 24,
             seed: 1,
             aovs: Vec::new(),
             aov_space: AovSpace::Picture,

@@ -75,8 +75,7 @@ impl Bvh {
     /// Whether anything lies within `max_mm` along a ray.
     pub fn occluded(&self, origin_mm: Vec3, dir: Vec3, max_mm: f32) -> bool {
         let ray = Ray::new(origin_mm.into(), dir.into(), 0.0, max_mm);
-        let mut hit = RayHit::none();
-        self.tree.ray_traverse(ray, &mut hit, |ray, id| self.triangles[id].intersect(ray))
+        !self.tree.ray_traverse_miss(ray, |ray, id| self.triangles[id].intersect(ray))
     }
 
     /// A start for rays that leave the surface on the side of `normal`.

@@ -5,7 +5,7 @@
 //! leaves the texel's own chart: towards a seam the spacing shrinks with the distance to it, down to nothing.
 
 use crate::passes::atlas::{ChartMap, NO_CHART};
-use crate::passes::tap::TAPS;
+use crate::passes::tap::{TAPS, Taps};
 use glam::{Vec2, Vec4};
 use rayon::prelude::*;
 
@@ -48,19 +48,19 @@ pub struct Widening {
 impl Widening {
     /// The taps that do it where a texel is `texel_mm` wide and nothing farther than `room` texels may be read.
     #[inline]
-    fn taps(self, texel_mm: f32, room: f32) -> Spread {
+    fn taps(self, taps: &Taps, texel_mm: f32, room: f32) -> Spread {
         let per_mm2 = 1.0 / (texel_mm * texel_mm);
         let (from, to) = (self.from_mm2 * per_mm2, self.to_mm2 * per_mm2);
-        if from < RAW_TEXEL2 && to < TAPS.widest_cells() && room >= 3.0 {
-            return Spread::Cells(TAPS.cells(to));
+        if from < RAW_TEXEL2 && to < taps.widest_cells() && room >= 3.0 {
+            return Spread::Cells(taps.cells(to));
         }
-        let variance = TAPS.discrete_variance(to) - TAPS.discrete_variance(from) - self.saved_texel2;
-        // A cubic read has no variance of its own, a linear one has; see `TAPS`.
-        let cubic = TAPS.cubic_spacing(variance);
-        if cubic < CUBIC_SPACING {
+        let variance = taps.discrete_variance(to) - taps.discrete_variance(from) - self.saved_texel2;
+        // A cubic read has no variance of its own, a linear one has; see `Taps`.
+        let cubic = taps.cubic_spacing(variance);
+        if cubic < CUBIC_SPACING && from < CUBIC_TEXEL2 {
             return Spread::Cubic(cubic.min((room - 1.0) / 3.0));
         }
-        Spread::Linear(TAPS.spacing(variance).min(room / 3.0))
+        Spread::Linear(taps.spacing(variance).min(room / 3.0))
     }
 }
 
@@ -81,9 +81,19 @@ const RAW_TEXEL2: f32 = 0.06;
 /// Spacing in texels below which taps are read by cubic interpolation. Light that was spread just enough for the taps
 /// still has detail of a few texels, which linear reads wash out unevenly (up to 4 % error in the measured profiles).
 const CUBIC_SPACING: f32 = 4.0;
+/// Variance in texel² from which on linear reads are good enough at any spacing.
+const CUBIC_TEXEL2: f32 = 3.0;
 
 /// Blurs `source` along an axis into `target`.
 pub fn blur(charts: &ChartMap, axis: Axis, widening: Widening, source: &Fields, target: &mut Fields) {
+    match axis {
+        Axis::U => blur_along::<false>(charts, widening, source, target),
+        Axis::V => blur_along::<true>(charts, widening, source, target),
+    }
+}
+
+/// The same with the axis known to the compiler: along v if `V`, else along u.
+fn blur_along<const V: bool>(charts: &ChartMap, widening: Widening, source: &Fields, target: &mut Fields) {
     let size = charts.size;
     let Fields { layers, stretch_mm } = target;
     let mut rows: Vec<Vec<&mut [Vec4]>> = (0..size).map(|_| Vec::with_capacity(layers.len())).collect();
@@ -92,41 +102,36 @@ pub fn blur(charts: &ChartMap, axis: Axis, widening: Widening, source: &Fields, 
             row.push(slice);
         }
     }
+    let taps: &Taps = &TAPS;
     rows.into_par_iter().zip(stretch_mm.par_chunks_mut(size)).enumerate().for_each(
         |(y, (mut layers, stretch))| {
             for x in 0..size {
                 let texel = y * size + x;
-                let reads = Reads::at(charts, axis, widening, &source.stretch_mm, texel);
+                let reads = Reads::at::<V>(taps, charts, widening, &source.stretch_mm, texel);
                 for (target, source) in layers.iter_mut().zip(&source.layers) {
-                    target[x] = reads.gather(source, texel);
+                    target[x] = reads.gather(source);
                 }
-                stretch[x] = reads.gather(&source.stretch_mm, texel);
+                stretch[x] = reads.gather_roughly(taps, &source.stretch_mm, texel);
             }
         },
     );
 }
 
-/// The texels one texel reads, relative to itself, and their weights.
-enum Reads {
-    /// Only itself.
-    Own,
-    /// Itself and three neighbours on either side.
-    Cells { weights: [f32; 4], stride: usize },
-    /// Three taps on the side of growing and of falling coordinates.
-    Spaced { sides: [[Tap; 3]; 2], stride: usize, cubic: bool },
-}
+/// Reads of one texel at most: itself, and six taps between four texels each.
+const MAX_READS: usize = 25;
 
-/// One tap: the texel before its place, in elements away from the centre, and the weights of the four around it.
-#[derive(Clone, Copy)]
-struct Tap {
-    whole: usize,
-    weights: [f32; 4],
+/// The texels one texel reads, and their weights.
+struct Reads {
+    count: usize,
+    texels: [u32; MAX_READS],
+    weights: [f32; MAX_READS],
+    /// The texels nearest to the six taps, for what needs no interpolation.
+    nearest: [u32; 6],
 }
 
 /// The line of texels along which one texel is blurred.
-struct Line<'a> {
+struct Line<'a, const V: bool> {
     stretch_mm: &'a [Vec2],
-    axis: Axis,
     texel: usize,
     /// Elements from one texel of the line to the next.
     stride: usize,
@@ -134,109 +139,162 @@ struct Line<'a> {
     room: f32,
 }
 
-impl Line<'_> {
-    #[inline]
+impl<const V: bool> Line<'_, V> {
+    #[inline(always)]
     fn texel_mm(&self, texel: usize) -> f32 {
-        match self.axis {
-            Axis::U => self.stretch_mm[texel].x,
-            Axis::V => self.stretch_mm[texel].y,
+        if V { self.stretch_mm[texel].y } else { self.stretch_mm[texel].x }
+    }
+
+    /// The texel `steps` away on one side.
+    #[inline(always)]
+    fn at(&self, steps: usize, forward: bool) -> usize {
+        if forward { self.texel + steps * self.stride } else { self.texel - steps * self.stride }
+    }
+}
+
+impl Reads {
+    #[inline(always)]
+    fn own(texel: usize) -> Self {
+        let mut reads =
+            Self { count: 1, texels: [0; MAX_READS], weights: [0.0; MAX_READS], nearest: [texel as u32; 6] };
+        reads.texels[0] = texel as u32;
+        reads.weights[0] = 1.0;
+        reads
+    }
+
+    #[inline(always)]
+    fn push(&mut self, texel: usize, weight: f32) {
+        self.texels[self.count] = texel as u32;
+        self.weights[self.count] = weight;
+        self.count += 1;
+    }
+
+    #[inline(always)]
+    fn at<const V: bool>(
+        taps: &Taps,
+        charts: &ChartMap,
+        widening: Widening,
+        stretch_mm: &[Vec2],
+        texel: usize,
+    ) -> Self {
+        let mut reads = Self::own(texel);
+        if charts.chart[texel] == NO_CHART {
+            return reads;
+        }
+        let (reach, stride) =
+            if V { (charts.reach_v[texel], charts.size) } else { (charts.reach_u[texel], 1) };
+        let reach = f32::from(reach);
+        // A place exactly at the end would make the next texel, outside, part of the read.
+        let mut line = Line::<V> { stretch_mm, texel, stride, room: reach - 1e-3 };
+        match widening.taps(taps, line.texel_mm(texel), reach) {
+            Spread::Cells(weights) => reads.add_cells(&line, weights),
+            Spread::Linear(spacing) => reads.add_spaced::<V, false>(taps, &line, spacing),
+            Spread::Cubic(spacing) => {
+                // A cubic read reaches one texel farther than a linear one.
+                line.room -= 1.0;
+                reads.add_spaced::<V, true>(taps, &line, spacing);
+            }
+        }
+        reads
+    }
+
+    #[inline(always)]
+    fn add_cells<const V: bool>(&mut self, line: &Line<V>, weights: [f32; 4]) {
+        self.weights[0] = weights[0];
+        for k in 1..4 {
+            let pair = [line.at(k, true), line.at(k, false)];
+            self.push(pair[0], weights[k]);
+            self.push(pair[1], weights[k]);
+            self.nearest[2 * k - 2] = pair[0] as u32;
+            self.nearest[2 * k - 1] = pair[1] as u32;
         }
     }
 
-    /// The taps on one side, `spacing_mm` of surface apart: where the stretch varies, so does the distance in texels.
-    /// Each step takes the stretch half a step ahead.
-    #[inline]
-    fn taps(&self, spacing: f32, spacing_mm: f32, forward: bool, cubic: bool) -> [Tap; 3] {
-        let mut at = 0.0f32;
-        let mut step = spacing;
-        std::array::from_fn(|k| {
-            let ahead = (at + 0.5 * step).min(self.room) as usize * self.stride;
-            step = spacing_mm / self.texel_mm(if forward { self.texel + ahead } else { self.texel - ahead });
-            at = (at + step).min(self.room);
-            let whole = at as usize;
-            let weights = if cubic { catmull_rom } else { linear }(at - whole as f32);
-            Tap { whole: whole * self.stride, weights: weights.map(|w| w * TAPS.weights[k + 1]) }
+    /// Three taps on either side, the same distance of surface apart: where the stretch varies, so does the distance in
+    /// texels. Each step takes the stretch half a step ahead.
+    #[inline(always)]
+    fn add_spaced<const V: bool, const CUBIC: bool>(&mut self, taps: &Taps, line: &Line<V>, spacing: f32) {
+        if spacing <= 0.0 || line.room <= 0.0 {
+            return;
+        }
+        self.weights[0] = taps.weights[0];
+        let spacing_mm = spacing * line.texel_mm(line.texel);
+        for (side, forward) in [true, false].into_iter().enumerate() {
+            let mut place = 0.0f32;
+            let mut step = spacing;
+            for k in 0..3 {
+                let ahead = (place + 0.5 * step).min(line.room) as usize;
+                step = spacing_mm / line.texel_mm(line.at(ahead, forward));
+                place = (place + step).min(line.room);
+                let whole = place as usize;
+                let f = place - whole as f32;
+                self.add_tap::<V, CUBIC>(line, whole, f, forward, taps.weights[k + 1]);
+                self.nearest[2 * k + side] = line.at(whole + usize::from(f > 0.5), forward) as u32;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn add_tap<const V: bool, const CUBIC: bool>(
+        &mut self,
+        line: &Line<V>,
+        whole: usize,
+        f: f32,
+        forward: bool,
+        weight: f32,
+    ) {
+        let near = line.at(whole, forward);
+        let far = line.at(whole + 1, forward);
+        if CUBIC {
+            let [w0, w1, w2, w3] = catmull_rom(f);
+            // Before the first texel on this side lies the first on the other.
+            let before = if whole > 0 { line.at(whole - 1, forward) } else { line.at(1, !forward) };
+            self.push(before, weight * w0);
+            self.push(near, weight * w1);
+            self.push(far, weight * w2);
+            self.push(line.at(whole + 2, forward), weight * w3);
+        } else {
+            self.push(near, weight * (1.0 - f));
+            self.push(far, weight * f);
+        }
+    }
+
+    #[inline(always)]
+    fn gather(&self, map: &[Vec4]) -> Vec4 {
+        // The number of reads is 1 plus a multiple of 6: six sums at a time keep the processor's adders busy.
+        let mut sums = [Vec4::ZERO; 6];
+        let reads =
+            self.texels[1..self.count].chunks_exact(6).zip(self.weights[1..self.count].chunks_exact(6));
+        for (texels, weights) in reads {
+            for k in 0..6 {
+                sums[k] += map[texels[k] as usize] * weights[k];
+            }
+        }
+        map[self.texels[0] as usize] * self.weights[0]
+            + (sums[0] + sums[1])
+            + (sums[2] + sums[3])
+            + (sums[4] + sums[5])
+    }
+
+    /// The same without interpolation: enough for the stretch, which is smooth or constant over whole triangles.
+    #[inline(always)]
+    fn gather_roughly(&self, taps: &Taps, map: &[Vec2], texel: usize) -> Vec2 {
+        if self.count == 1 {
+            return map[texel];
+        }
+        let centre = self.weights[0];
+        let outer =
+            if self.count == 7 { [self.weights[1], self.weights[3], self.weights[5]] } else { taps.outer() };
+        let pairs = self.nearest.chunks_exact(2).zip(outer);
+        pairs.fold(map[texel] * centre, |sum, (pair, w)| {
+            sum + (map[pair[0] as usize] + map[pair[1] as usize]) * w
         })
     }
 }
 
-/// Weights of linear interpolation between the two middle ones of four neighbours.
-#[inline]
-fn linear(f: f32) -> [f32; 4] {
-    [0.0, 1.0 - f, f, 0.0]
-}
-
 /// Weights of cubic interpolation through four neighbours (Catmull & Rom 1974), exact for parabolas.
-#[inline]
+#[inline(always)]
 fn catmull_rom(f: f32) -> [f32; 4] {
     let (f2, f3) = (f * f, f * f * f);
     [-0.5 * f + f2 - 0.5 * f3, 1.0 - 2.5 * f2 + 1.5 * f3, 0.5 * f + 2.0 * f2 - 1.5 * f3, -0.5 * f2 + 0.5 * f3]
-}
-
-impl Reads {
-    #[inline]
-    fn at(charts: &ChartMap, axis: Axis, widening: Widening, stretch_mm: &[Vec2], texel: usize) -> Self {
-        if charts.chart[texel] == NO_CHART {
-            return Self::Own;
-        }
-        let (reach, stride) = match axis {
-            Axis::U => (charts.reach_u[texel], 1),
-            Axis::V => (charts.reach_v[texel], charts.size),
-        };
-        let reach = f32::from(reach);
-        let line = Line { stretch_mm, axis, texel, stride, room: reach };
-        let texel_mm = line.texel_mm(texel);
-        match widening.taps(texel_mm, reach) {
-            Spread::Cells(weights) => Self::Cells { weights, stride },
-            // The last texel read must still be inside: one past the place of a linear tap, two past a cubic one.
-            Spread::Cubic(spacing) => line.shortened(1.0).spaced(spacing, spacing * texel_mm, true),
-            Spread::Linear(spacing) => line.spaced(spacing, spacing * texel_mm, false),
-        }
-    }
-
-    #[inline]
-    fn gather<T>(&self, map: &[T], texel: usize) -> T
-    where
-        T: Copy + std::ops::Add<Output = T> + std::ops::Mul<f32, Output = T>,
-    {
-        match self {
-            Self::Own => map[texel],
-            Self::Cells { weights, stride } => {
-                let pair = |k: usize| (map[texel + k * stride] + map[texel - k * stride]) * weights[k];
-                map[texel] * weights[0] + pair(1) + pair(2) + pair(3)
-            }
-            Self::Spaced { sides, stride, cubic } => {
-                let mut sum = map[texel] * TAPS.weights[0];
-                for [up, down] in std::array::from_fn::<_, 3, _>(|k| [&sides[0][k], &sides[1][k]]) {
-                    let (u, d) = (texel + up.whole, texel - down.whole);
-                    sum = sum + map[u] * up.weights[1] + map[u + stride] * up.weights[2];
-                    sum = sum + map[d] * down.weights[1] + map[d - stride] * down.weights[2];
-                    if *cubic {
-                        sum = sum + map[u - stride] * up.weights[0] + map[u + 2 * stride] * up.weights[3];
-                        sum = sum + map[d + stride] * down.weights[0] + map[d - 2 * stride] * down.weights[3];
-                    }
-                }
-                sum
-            }
-        }
-    }
-}
-
-impl Line<'_> {
-    /// The same line with less room.
-    #[inline]
-    fn shortened(self, texels: f32) -> Self {
-        Self { room: self.room - texels, ..self }
-    }
-
-    #[inline]
-    fn spaced(mut self, spacing: f32, spacing_mm: f32, cubic: bool) -> Reads {
-        // A place exactly at the end would make the next texel, outside, part of the read.
-        self.room -= 1e-3;
-        if spacing <= 0.0 || self.room <= 0.0 {
-            return Reads::Own;
-        }
-        let side = |forward| self.taps(spacing, spacing_mm, forward, cubic);
-        Reads::Spaced { sides: [side(true), side(false)], stride: self.stride, cubic }
-    }
 }

@@ -56,9 +56,10 @@ impl Diffused {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Separable;
 
-/// A Gaussian may live in a smaller texture when its standard deviation is still this many texels there. At 3, the
-/// variance that bilinear reads add varies by at most 1/8 texel² about its mean, 1.4 % of 9.
-const COARSE_DEVIATION_TEXELS: f32 = 3.0;
+/// A Gaussian may live in a smaller texture when its standard deviation is still this many texels there. At 1.75, the
+/// variance that bilinear reads add varies by at most 1/8 texel² about its mean, 4 % of 3; only wide Gaussians, with
+/// little power, are that coarse.
+const COARSE_DEVIATION_TEXELS: f32 = 1.75;
 /// Smallest texture: below this, charts dissolve and nothing is left to save.
 const MIN_SIZE: usize = 64;
 /// A step may at most quadruple the variance (section 5.1 of the paper): ripples of exp(-2 pi²/3) = 0.14 %.
@@ -107,9 +108,8 @@ struct State {
     charts: Arc<ChartMap>,
     fields: Fields,
     scratch: Fields,
-    /// Texel size that few texels (by area) fall below, and the median, mm.
-    small_mm: f32,
-    median_mm: f32,
+    /// Texel size that half of the surface falls below, mm.
+    texel_mm: f32,
     /// Variance the next step leaves out, texel².
     saved_texel2: f32,
     /// Variance left to the final bilinear read so far, texel².
@@ -119,8 +119,8 @@ struct State {
 impl State {
     fn new(charts: Arc<ChartMap>, fields: Fields) -> Self {
         let scratch = Fields::zeros(fields.layers.len(), fields.stretch_mm.len());
-        let [small_mm, median_mm] = texel_sizes_mm(&charts, &fields.stretch_mm);
-        Self { charts, fields, scratch, small_mm, median_mm, saved_texel2: 0.0, left_to_read_texel2: 0.0 }
+        let texel_mm = median_texel_mm(&charts, &fields.stretch_mm);
+        Self { charts, fields, scratch, texel_mm, saved_texel2: 0.0, left_to_read_texel2: 0.0 }
     }
 
     fn level(&self) -> Level {
@@ -129,7 +129,7 @@ impl State {
 
     fn can_be_halved_for(&self, variance_mm2: f32) -> bool {
         let halves = self.charts.size.is_multiple_of(2) && self.charts.size / 2 >= MIN_SIZE;
-        halves && variance_mm2.sqrt() >= COARSE_DEVIATION_TEXELS * 2.0 * self.median_mm
+        halves && variance_mm2.sqrt() >= COARSE_DEVIATION_TEXELS * 2.0 * self.texel_mm
     }
 
     fn halve(&mut self) {
@@ -137,8 +137,7 @@ impl State {
         self.fields = halved_fields(&self.charts, &coarse, &self.fields);
         self.scratch = Fields::zeros(self.fields.layers.len(), self.fields.stretch_mm.len());
         self.charts = Arc::new(coarse);
-        self.small_mm *= 2.0;
-        self.median_mm *= 2.0;
+        self.texel_mm *= 2.0;
         // A quarter of each amount, because a texel² is now four times as large.
         self.saved_texel2 =
             0.25 * self.saved_texel2 + HALVING_TEXEL2 + BILINEAR_TEXEL2 - 0.25 * self.left_to_read_texel2;
@@ -147,11 +146,11 @@ impl State {
 
     /// Variance to go to next on the way from `reached` to `wanted`, so that the taps never skip texels that matter.
     fn next_step_mm2(&self, reached_mm2: f32, wanted_mm2: f32) -> f32 {
-        let texel2_mm2 = self.small_mm * self.small_mm;
+        let texel2_mm2 = self.texel_mm * self.texel_mm;
         let ratio = if reached_mm2 < FINE_TEXEL2 * texel2_mm2 { FINE_RATIO } else { MAX_RATIO };
-        // 1 % of slack, so that a kernel made for this rule does not cost a step more.
+        // 2 % of slack, so that a kernel made for this rule does not cost a step more.
         let most_mm2 = (ratio * reached_mm2).max(reached_mm2 + FIRST_STEP_TEXEL2 * texel2_mm2);
-        if wanted_mm2 <= 1.01 * most_mm2 { wanted_mm2 } else { most_mm2 }
+        if wanted_mm2 <= 1.02 * most_mm2 { wanted_mm2 } else { most_mm2 }
     }
 
     fn step(&mut self, from_mm2: f32, to_mm2: f32) {
@@ -162,21 +161,19 @@ impl State {
     }
 }
 
-/// The texel size (the smaller of both directions) below which 5 % and 50 % of the surface lie, mm.
-fn texel_sizes_mm(charts: &ChartMap, stretch_mm: &[Vec2]) -> [f32; 2] {
-    // Every seventh texel is plenty for two percentiles, and 7 divides no texture size.
+/// The texel size (the smaller of both directions) below which half of the surface lies, mm.
+fn median_texel_mm(charts: &ChartMap, stretch_mm: &[Vec2]) -> f32 {
+    // Every seventh texel is plenty for a median, and 7 divides no texture size.
     let covered = charts.chart.iter().zip(stretch_mm).step_by(7).filter(|(c, _)| **c != NO_CHART);
     let mut sizes: Vec<(f32, f64)> = covered.map(|(_, s)| (s.min_element(), f64::from(s.x * s.y))).collect();
     sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
     let total: f64 = sizes.iter().map(|s| s.1).sum();
-    [0.05, 0.5].map(|fraction| {
-        let mut sum = 0.0;
-        let found = sizes.iter().find(|(_, area)| {
-            sum += area;
-            sum >= fraction * total
-        });
-        found.map_or(1.0, |s| s.0)
-    })
+    let mut sum = 0.0;
+    let middle = sizes.iter().find(|(_, area)| {
+        sum += area;
+        sum >= 0.5 * total
+    });
+    middle.map_or(1.0, |s| s.0)
 }
 
 /// The mean over the texels of the same chart; the stretch counts for coarse texels.

@@ -61,25 +61,22 @@ pub fn irradiance(inputs: &IrradianceInputs, progress: &dyn Progress) -> Irradia
     let layer_count = 1 + lights.saturating_sub(1).div_ceil(4);
     let share_count = if lights > 1 { lights.div_ceil(4) } else { 0 };
     progress.begin("irradiance", size as u64);
-    let rows: Vec<Vec<Vec<Vec4>>> = (0..size)
-        .into_par_iter()
-        .map(|y| {
-            let mut row = vec![vec![Vec4::ZERO; size]; layer_count + share_count];
-            for x in 0..size {
-                light_texel(inputs, x, y, layer_count, &mut row);
-            }
-            progress.advance(1);
-            row
-        })
-        .collect();
-    let layer = |l: usize| rows.iter().flat_map(|row| row[l].iter().copied()).collect();
-    Irradiance {
-        layers: (0..layer_count).map(layer).collect(),
-        shares: (layer_count..layer_count + share_count).map(layer).collect(),
+    let mut layers = vec![vec![Vec4::ZERO; size * size]; layer_count + share_count];
+    let mut rows: Vec<Vec<&mut [Vec4]>> = (0..size).map(|_| Vec::with_capacity(layers.len())).collect();
+    for layer in &mut layers {
+        rows.iter_mut().zip(layer.chunks_mut(size)).for_each(|(row, slice)| row.push(slice));
     }
+    rows.into_par_iter().enumerate().for_each(|(y, mut row)| {
+        for x in 0..size {
+            light_texel(inputs, x, y, layer_count, &mut row);
+        }
+        progress.advance(1);
+    });
+    let shares = layers.split_off(layer_count);
+    Irradiance { layers, shares }
 }
 
-fn light_texel(inputs: &IrradianceInputs, x: usize, y: usize, layer_count: usize, row: &mut [Vec<Vec4>]) {
+fn light_texel(inputs: &IrradianceInputs, x: usize, y: usize, layer_count: usize, row: &mut [&mut [Vec4]]) {
     let texel = y * inputs.atlas.size + x;
     let Some(point) = inputs.atlas.surface_point(inputs.object, texel) else { return };
     let material = &inputs.object.material;

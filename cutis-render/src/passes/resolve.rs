@@ -6,8 +6,8 @@ use crate::passes::atlas::Atlas;
 use crate::passes::diffusion::Diffused;
 use crate::passes::irradiance::{distance_slot, shading_normal};
 use crate::passes::specular::Shine;
-use crate::passes::transmission::{ShadowedPlace, transmitted};
-use crate::passes::visibility::{LightFacing, light_facing_surface, visible_fraction};
+use crate::passes::transmission::{slab_weights, transmitted};
+use crate::passes::visibility::{LightFacing, faces, light_facing_surface, visible_fraction};
 use crate::prepare::{FilteredEnvironment, Kernel, RhoDt};
 use crate::settings::Aov;
 use cutis_scene::{Bvh, Hit, Object, Scene, SurfacePoint};
@@ -130,7 +130,7 @@ impl Resolve<'_> {
         let mut sum = Vec3::ZERO;
         for light in &self.scene.lights {
             let towards = light.sample(place.point.position_mm);
-            if place.point.normal.dot(towards.dir_to_light) > 0.0 {
+            if faces(&place.point, light) {
                 let reflected = shine.from_light(&towards);
                 if reflected != Vec3::ZERO {
                     sum += reflected * visible_fraction(self.bvh, &place.point, light, 1, turn);
@@ -145,17 +145,21 @@ impl Resolve<'_> {
     }
 
     fn through_the_body(&self, place: &Place) -> Vec3 {
+        let Place { maps, point, chart, .. } = place;
         let mut sum = Vec3::ZERO;
         for (l, light) in self.scene.lights.iter().enumerate() {
-            if let Some(there) = light_facing_surface(self.scene, self.bvh, &place.point, light) {
-                let share = self.share(l, &there);
-                if share > 0.0 {
-                    let here = self.shadowed_place(place, &there);
-                    let maps = &self.maps[there.object];
-                    let kernel = &place.maps.kernel;
-                    sum += transmitted(kernel, l, (&place.maps.diffused, &here), (&maps.diffused, &there))
-                        * share;
-                }
+            if faces(point, light) {
+                continue;
+            }
+            let Some(slab) = slab_weights(&maps.kernel, &maps.diffused, l, point.uv, *chart) else {
+                continue;
+            };
+            let Some(there) = light_facing_surface(self.scene, self.bvh, point, light) else { continue };
+            let share = self.share(l, &there);
+            if share > 0.0 {
+                let apart_mm = self.apart_mm(place, &there);
+                let lit = &self.maps[there.object].diffused;
+                sum += transmitted(&maps.kernel, &slab, apart_mm, lit, &there) * share;
             }
         }
         sum
@@ -170,11 +174,11 @@ impl Resolve<'_> {
         }
     }
 
-    fn shadowed_place(&self, place: &Place, there: &LightFacing) -> ShadowedPlace {
+    /// Distance along the surface to the light-facing place, mm; infinite if another chart or object holds that, for
+    /// then no blur has brought its light here.
+    fn apart_mm(&self, place: &Place, there: &LightFacing) -> f32 {
         let same = std::ptr::eq(place.maps, &self.maps[there.object]) && place.chart == there.chart;
-        let apart_mm =
-            if same { along_surface_mm(place.maps, place.point.uv, there.uv) } else { f32::INFINITY };
-        ShadowedPlace { uv: place.point.uv, chart: place.chart, apart_mm }
+        if same { along_surface_mm(place.maps, place.point.uv, there.uv) } else { f32::INFINITY }
     }
 
     fn layer(&self, aov: Aov, place: &Place, parts: &Parts) -> Vec4 {

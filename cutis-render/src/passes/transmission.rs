@@ -17,32 +17,42 @@ use glam::{Vec2, Vec3};
 /// Distance in the surface, in standard deviations of a Gaussian, below which it begins to fade (paper, section 5.2).
 const FADE_DEVIATIONS: f32 = 6.0;
 
-/// The shadowed place and what is known of it.
-#[derive(Debug, Clone, Copy)]
-pub struct ShadowedPlace {
-    /// Its texture coordinates.
-    pub uv: Vec2,
-    /// Its chart.
-    pub chart: u32,
-    /// Distance along the surface to the light-facing place, mm; infinite if another chart or object holds that.
-    pub apart_mm: f32,
+/// Below a millionth of the light nothing shows, and a look-up can be saved.
+const VISIBLE: f32 = 1e-6;
+
+/// What the body lets through at a place from light number `light`, for every Gaussian, before any fading. `None` if
+/// nothing comes through that could be seen, so that no ray need be cast.
+pub fn slab_weights(
+    kernel: &Kernel,
+    maps: &Diffused,
+    light: usize,
+    uv: Vec2,
+    chart: u32,
+) -> Option<Vec<f32>> {
+    let (layer, component) = distance_slot(light);
+    let weight = |(i, &v): (usize, &f32)| slab_weight(maps.sample(i, layer, uv, chart)[component], v);
+    // Narrow Gaussians pass less than wide ones unless the distance varies wildly: most places end with the widest.
+    let last = kernel.variances_mm2.len() - 1;
+    if weight((last, &kernel.variances_mm2[last])) < VISIBLE && kernel.variances_mm2[last] > 0.0 {
+        return None;
+    }
+    let weights: Vec<f32> = kernel.variances_mm2.iter().enumerate().map(weight).collect();
+    weights.iter().any(|&w| w > VISIBLE).then_some(weights)
 }
 
-/// Radiant exitance under the surface at `here` from light number `light` through the body, W/m².
+/// Radiant exitance under the surface from the light-facing place, `apart_mm` away along the surface, W/m².
 pub fn transmitted(
     kernel: &Kernel,
-    light: usize,
-    (here_maps, here): (&Diffused, &ShadowedPlace),
-    (there_maps, there): (&Diffused, &LightFacing),
+    slab: &[f32],
+    apart_mm: f32,
+    maps: &Diffused,
+    there: &LightFacing,
 ) -> Vec3 {
-    let (layer, component) = distance_slot(light);
     let mut sum = Vec3::ZERO;
     for (i, (&variance_mm2, &weight)) in kernel.variances_mm2.iter().zip(&kernel.weights).enumerate() {
-        let d_mm = here_maps.sample(i, layer, here.uv, here.chart)[component];
-        let through = slab_weight(d_mm, variance_mm2) * fade_out(here.apart_mm, variance_mm2);
-        // Below a millionth nothing shows, and the look-up can be saved.
-        if through > 1e-6 {
-            sum += weight * through * there_maps.sample(i + 1, 0, there.uv, there.chart).truncate();
+        let through = slab[i] * fade_out(apart_mm, variance_mm2);
+        if through > VISIBLE {
+            sum += weight * through * maps.sample(i + 1, 0, there.uv, there.chart).truncate();
         }
     }
     sum

@@ -36,6 +36,11 @@ pub fn visible_fraction(bvh: &Bvh, point: &SurfacePoint, light: &Light, samples:
     seen.count() as f32 / samples as f32
 }
 
+/// Whether the smooth surface faces the light.
+pub fn faces(point: &SurfacePoint, light: &Light) -> bool {
+    point.normal.dot(light.sample(point.position_mm).dir_to_light) >= 0.0
+}
+
 /// The light-facing surface behind a point that faces away from the light: where a ray towards the light leaves the
 /// body. `None` if the point faces the light, or the ray never leaves (open meshes).
 pub fn light_facing_surface(
@@ -44,10 +49,10 @@ pub fn light_facing_surface(
     point: &SurfacePoint,
     light: &Light,
 ) -> Option<LightFacing> {
-    let towards = light.sample(point.position_mm);
-    if point.normal.dot(towards.dir_to_light) >= 0.0 {
+    if faces(point, light) {
         return None;
     }
+    let towards = light.sample(point.position_mm);
     let origin = bvh.step_off(point.position_mm, -point.flat_normal);
     let hit = bvh.closest(origin, towards.dir_to_light, towards.distance_mm)?;
     let object = &scene.objects[hit.object as usize];

@@ -3,21 +3,29 @@
 //! A sculpture of distance functions is meshed by surface nets, thinned, unwrapped into a few charts and refined to
 //! the wanted number of triangles; its colour, relief and shine are computed per texel from positions in space.
 
+mod areas;
 mod decimate;
 mod detail;
 mod ear;
 mod ear_plate;
+mod eyes;
 mod face;
 mod flatten;
 mod grid;
 mod mesher;
+mod mouth;
 mod neck;
+mod noise;
+mod nose;
 mod polish;
 mod refine;
 mod regions;
+mod relief;
 mod sculpture;
 mod sdf;
 mod skull;
+mod skin_maps;
+mod texels;
 mod unwrap;
 
 use crate::{Material, Mesh, Object};
@@ -51,7 +59,9 @@ const UNWRAPPED_TRIANGLES: usize = 24_000;
 pub fn built_in(detail: HeadDetail) -> Object {
     let sculpture = Sculpture::new();
     let surface = surface(&sculpture, detail.triangles);
-    Object::new("head", mesh(&surface, &sculpture), Material::default())
+    let mut head = Object::new("head", mesh(&surface, &sculpture), Material::default());
+    head.material = skin_maps::material(&head, &sculpture, detail.map_size);
+    head
 }
 
 fn surface(sculpture: &Sculpture, triangles: usize) -> Unwrapped {

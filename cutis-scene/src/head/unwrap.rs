@@ -33,7 +33,6 @@ struct Chart {
 /// Cuts, flattens and packs.
 pub fn unwrap(surface: Surface, sculpture: &Sculpture) -> Unwrapped {
     let regions = regions(&surface, sculpture);
-    eprintln!("regions done");
     let count = regions.iter().max().map_or(0, |&m| m + 1);
     let mut charts: Vec<Chart> = (0..count).into_par_iter().map(|r| chart(&surface, &regions, r)).collect();
     charts.iter_mut().for_each(stand_upright);

@@ -96,6 +96,13 @@ impl Ear {
         soft_union(slab, self.helix.distance(q, 8.0), 1.6)
     }
 
+    /// Whether a point lies in the hollow, on the outer side of the plate.
+    pub fn in_hollow(&self, side: Vec3) -> bool {
+        let q = self.local(side);
+        let plate = self.plate.at(Vec2::new(q.x, q.y));
+        plate.outside_concha_mm < 0.5 && plate.off_mm(q.z) > -1.0 && q.z < 2.0
+    }
+
     /// Signed distance from the middle of the plate: positive on the side that faces out, mm.
     pub fn front_mm(&self, side: Vec3) -> f32 {
         let q = self.local(side);

@@ -40,8 +40,11 @@ impl Nose {
         let d = soft_union(d, self.wing.distance(side, 15.0), 4.5);
         let columella = ellipsoid(p - Vec3::new(0.0, -44.5, 97.5), Vec3::new(3.6, 4.3, 8.0));
         let d = soft_union(d, columella, 4.5);
-        let nostril = pitch(25.0) * (side - Vec3::new(7.3, -45.7, 97.0));
-        let d = soft_cut(d, ellipsoid(nostril, Vec3::new(2.9, 4.6, 5.2)), 2.0);
+        // Closes the space between wings, bridge and lip, so that the nostrils are the only openings.
+        let base = ellipsoid(side - Vec3::new(4.0, -39.5, 91.0), Vec3::new(10.0, 6.0, 12.0));
+        let d = soft_union(d, base, 3.0);
+        let nostril = pitch(25.0) * (side - Vec3::new(7.2, -45.8, 96.5));
+        let d = soft_cut(d, ellipsoid(nostril, Vec3::new(2.9, 4.4, 5.0)), 2.0);
         let around = groove(self.wing_groove.distance(Vec2::new(side.x, p.y)), 1.6);
         d + 0.7 * around * smoothstep(76.0, 82.0, p.z)
     }

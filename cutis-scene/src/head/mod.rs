@@ -96,17 +96,3 @@ fn mesh(surface: &Unwrapped, sculpture: &Sculpture) -> Mesh {
         ..Mesh::default()
     }
 }
-
-#[cfg(test)]
-mod probe {
-    use super::*;
-    #[test]
-    fn voids() {
-        let s = Sculpture::new();
-        for xi in 0..3 { for yi in 0..300 { let y = 115.0 - yi as f32; let x = xi as f32 * 0.7;
-            let mut spans = vec![]; let mut inside = false;
-            for zi in 0..1000 { let z = 118.0 - 0.24 * zi as f32; let i = s.distance(Vec3::new(x, y, z)) < 0.0; if i != inside { spans.push(z); inside = i; } }
-            if spans.len() > 2 { eprintln!("{x} {y} {spans:?}"); }
-        } }
-    }
-}

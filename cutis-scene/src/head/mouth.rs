@@ -13,7 +13,7 @@ pub struct Mouth {
 
 /// The closed mouth seen from the front, mm. About as broad as the pupils are apart, less a finger.
 pub const MOUTH_LINE_MM: [[f32; 2]; 6] =
-    [[-1.0, -71.0], [0.0, -71.0], [5.0, -70.2], [14.0, -70.9], [21.0, -71.2], [26.5, -70.6]];
+    [[-1.0, -71.0], [0.0, -71.0], [5.0, -70.2], [14.0, -70.9], [20.0, -71.2], [25.0, -70.7]];
 
 impl Mouth {
     /// Lays out the curves.
@@ -45,7 +45,7 @@ impl Mouth {
         let d = soft_union(d, lips, 3.6);
         let frontal = Vec2::new(side.x, p.y);
         let on_front = smoothstep(60.0, 72.0, p.z);
-        let line = 1.6 * groove(self.line.distance(frontal), 1.25);
+        let line = 1.2 * groove(self.line.distance(frontal), 1.25);
         let fold = 0.9 * groove(self.fold.distance(frontal), 4.5);
         let philtrum = 1.3 * bell(p - Vec3::new(0.0, -56.5, 93.0), Vec3::new(3.0, 6.5, 8.0))
             - 0.5 * bell(side - Vec3::new(5.3, -58.0, 93.0), Vec3::new(2.2, 6.5, 8.0));

@@ -5,6 +5,8 @@ use glam::{Vec2, Vec3};
 
 /// What belongs to the nose.
 pub struct Nose {
+    /// What fills the space between the ridge and the face.
+    body: Sweep,
     bridge: Sweep,
     wing: Sweep,
     wing_groove: Curve2,
@@ -14,6 +16,7 @@ impl Nose {
     /// Lays out the curves.
     pub fn new() -> Self {
         Self {
+            body: Sweep::new(&[[0.0, 4.0, 74.0, 8.0], [0.0, -18.0, 83.0, 9.5], [0.0, -36.0, 90.0, 11.0]]),
             bridge: Sweep::new(&[
                 [0.0, 8.0, 78.5, 7.5],
                 [0.0, -6.0, 84.5, 6.2],
@@ -36,7 +39,8 @@ impl Nose {
         if side.x > 40.0 || p.y < -75.0 || p.y > 35.0 {
             return d;
         }
-        let d = soft_union(d, self.bridge.distance(p, 25.0), 13.0);
+        let d = soft_union(d, self.body.distance(p, 25.0), 10.0);
+        let d = soft_union(d, self.bridge.distance(p, 25.0), 11.0);
         let d = soft_union(d, self.wing.distance(side, 15.0), 4.5);
         let columella = ellipsoid(p - Vec3::new(0.0, -44.5, 97.5), Vec3::new(3.6, 4.3, 8.0));
         let d = soft_union(d, columella, 4.5);

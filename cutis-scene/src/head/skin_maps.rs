@@ -87,7 +87,7 @@ fn colour(p: Vec3, areas: &Areas) -> Vec3 {
     let mut c = SKIN * (-(of_blood + of_melanin + of_eye)).exp();
     let lip = LIPS * (1.0 + 0.12 * lattice(Vec3::new(p.x / 1.3, p.y / 6.0, p.z / 2.5), 7));
     c = c.lerp(lip, 0.9 * areas.lips);
-    c *= 1.0 - 0.45 * areas.mouth_line;
+    c *= 1.0 - 0.3 * areas.mouth_line;
     c.lerp(HAIR, 0.75 * hair(p, areas))
 }
 

@@ -79,7 +79,8 @@ fn picture(head: &Object, bvh: &Bvh, view: &View, clay: bool) -> Result<image::R
         let mut sum = Vec3::ZERO;
         for s in 0..4u32 {
             let (sx, sy) = (0.25 + 0.5 * (s & 1) as f32, 0.25 + 0.5 * (s >> 1) as f32);
-            let offset = Vec3::new(x as f32 + sx - 0.5 * WIDTH as f32, 0.5 * HEIGHT as f32 - y as f32 - sy, 0.0) * mm;
+            let offset =
+                Vec3::new(x as f32 + sx - 0.5 * WIDTH as f32, 0.5 * HEIGHT as f32 - y as f32 - sy, 0.0) * mm;
             // A long lens from 1.5 m.
             let eye = world_from_view * Vec3::new(0.0, 0.0, 1500.0);
             let target = world_from_view * offset;
@@ -98,7 +99,15 @@ fn encode(linear: f32) -> u8 {
     (encoded * 255.0 + 0.5) as u8
 }
 
-fn shade(head: &Object, bvh: &Bvh, eye: Vec3, dir: Vec3, world_from_view: Mat3, seed: u32, clay: bool) -> Vec3 {
+fn shade(
+    head: &Object,
+    bvh: &Bvh,
+    eye: Vec3,
+    dir: Vec3,
+    world_from_view: Mat3,
+    seed: u32,
+    clay: bool,
+) -> Vec3 {
     let Some(hit) = bvh.closest(eye, dir, 4000.0) else { return Vec3::splat(0.03) };
     let point = head.surface_point(hit.triangle, hit.b1, hit.b2);
     let material = &head.material;
@@ -115,7 +124,8 @@ fn shade(head: &Object, bvh: &Bvh, eye: Vec3, dir: Vec3, world_from_view: Mat3, 
     if !clay {
         let half = (key - dir).normalize();
         let m = material.roughness.at(point.uv);
-        let gloss = 0.028 * material.rho_s.at(point.uv) * normal.dot(half).max(0.0).powf(2.0 / (m * m)) / (m * m);
+        let gloss =
+            0.028 * material.rho_s.at(point.uv) * normal.dot(half).max(0.0).powf(2.0 / (m * m)) / (m * m);
         colour += Vec3::splat(2.1 * gloss * lambert(bvh, &point, normal, key));
     }
     colour
@@ -124,7 +134,11 @@ fn shade(head: &Object, bvh: &Bvh, eye: Vec3, dir: Vec3, world_from_view: Mat3, 
 fn lambert(bvh: &Bvh, point: &SurfacePoint, normal: Vec3, to_light: Vec3) -> f32 {
     let cosine = normal.dot(to_light).max(0.0) / std::f32::consts::PI;
     let start = bvh.step_off(point.lifted_position_mm, point.normal);
-    if cosine == 0.0 || bvh.occluded(start, to_light, 1000.0) { 0.0 } else { cosine * std::f32::consts::PI * 0.5 }
+    if cosine == 0.0 || bvh.occluded(start, to_light, 1000.0) {
+        0.0
+    } else {
+        cosine * std::f32::consts::PI * 0.5
+    }
 }
 
 /// Open part of the sky over the point, from a few rays within 80 mm.
@@ -159,7 +173,8 @@ fn save_maps(head: &Object, folder: &Path) -> Result<(), Box<dyn std::error::Err
     ];
     for (name, texture) in maps.into_iter().filter_map(|(name, t)| Some((name, t?))) {
         let (Texels::Srgb8(texels) | Texels::Linear8(texels)) = texture.texels() else { continue };
-        let image = image::RgbaImage::from_raw(texture.width(), texture.height(), texels.clone().into_flattened());
+        let image =
+            image::RgbaImage::from_raw(texture.width(), texture.height(), texels.clone().into_flattened());
         image.ok_or("map size")?.save(folder.join(format!("{name}.png")))?;
     }
     Ok(())
@@ -184,11 +199,21 @@ fn report_texels(head: &Object) {
     let whole: f32 = sizes.iter().map(|s| s.1).sum();
     let quantile = |q: f32| {
         let mut below = 0.0;
-        sizes.iter().find(|s| { below += s.1; below >= q * whole }).map_or(0.0, |s| s.0)
+        sizes
+            .iter()
+            .find(|s| {
+                below += s.1;
+                below >= q * whole
+            })
+            .map_or(0.0, |s| s.0)
     };
     eprintln!(
         "texel on the face, mm at 2048: 1 % {:.3}, 10 % {:.3}, half {:.3}, 90 % {:.3}, 99 % {:.3}; overlap {:.5}",
-        quantile(0.01), quantile(0.1), quantile(0.5), quantile(0.9), quantile(0.99),
+        quantile(0.01),
+        quantile(0.1),
+        quantile(0.5),
+        quantile(0.9),
+        quantile(0.99),
         cutis_scene::Charts::overlap_fraction(mesh, 2048)
     );
 }

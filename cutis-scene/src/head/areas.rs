@@ -73,11 +73,16 @@ impl<'a> AreaFinder<'a> {
         let cheek = at(42.0, -34.0, 66.0, 19.0, 17.0, 26.0);
         let beside_nose = at(21.0, -30.0, 82.0, 14.0, 16.0, 18.0);
         let mut areas = Areas {
-            flushed: (0.9 * cheek + 0.9 * at(0.0, -38.0, 105.0, 15.0, 11.0, 14.0) + 0.4 * chin + self.ear(side)).min(1.0),
+            flushed: (0.9 * cheek
+                + 0.9 * at(0.0, -38.0, 105.0, 15.0, 11.0, 14.0)
+                + 0.4 * chin
+                + self.ear(side))
+            .min(1.0),
             pale: (forehead + at(58.0, 20.0, 45.0, 20.0, 24.0, 25.0)).min(1.0),
             porous: (nose + beside_nose + 0.5 * cheek + 0.3 * chin + 0.25 * forehead).min(1.0),
             oily: (forehead + nose + 0.6 * chin).min(1.0),
-            eye: (at(31.0, -2.0, 78.0, 20.0, 11.0, 14.0) + 0.8 * at(29.0, -14.0, 76.0, 15.0, 6.0, 12.0)).min(1.0),
+            eye: (at(31.0, -2.0, 78.0, 20.0, 11.0, 14.0) + 0.8 * at(29.0, -14.0, 76.0, 15.0, 6.0, 12.0))
+                .min(1.0),
             ..Areas::default()
         };
         if p.z > 45.0 {
@@ -90,7 +95,9 @@ impl<'a> AreaFinder<'a> {
         if !self.sculpture.ear.near(side) {
             return 0.0;
         }
-        smoothstep(38.0, 26.0, (self.sculpture.ear.local(side) - Vec3::new(17.0, 0.0, 0.0)).length()) * 0.9
+        let q = self.sculpture.ear.local(side);
+        let within = smoothstep(36.0, 28.0, (q - Vec3::new(17.0, 0.0, 0.0)).length());
+        0.8 * within * smoothstep(-3.0, 4.0, q.x) * smoothstep(-16.0, -8.0, q.z)
     }
 
     fn draw_lines(&self, areas: &mut Areas, q: Vec2) {

@@ -14,7 +14,11 @@ use std::collections::BinaryHeap;
 const MOST_TRIANGLES_AT_A_POINT: usize = 9;
 
 /// Collapses edges until `triangles` are left; `edge_length_mm` says how long edges should be where.
-pub fn decimate(surface: Surface, triangles: usize, edge_length_mm: &(impl Fn(Vec3) -> f32 + Sync)) -> Surface {
+pub fn decimate(
+    surface: Surface,
+    triangles: usize,
+    edge_length_mm: &(impl Fn(Vec3) -> f32 + Sync),
+) -> Surface {
     let mut thinning = Thinning::new(surface, edge_length_mm);
     while thinning.alive > triangles && thinning.step() {}
     thinning.finish()
@@ -50,8 +54,10 @@ impl<'a, F: Fn(Vec3) -> f32 + Sync> Thinning<'a, F> {
             around,
             edge_length_mm,
         };
-        let edges: Vec<_> = thinning.surface.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
-        thinning.queue = edges.iter().filter(|[a, b]| a < b).map(|&edge| Reverse(thinning.entry(edge))).collect();
+        let edges: Vec<_> =
+            thinning.surface.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+        thinning.queue =
+            edges.iter().filter(|[a, b]| a < b).map(|&edge| Reverse(thinning.entry(edge))).collect();
         thinning
     }
 

@@ -23,8 +23,10 @@ mod regions;
 mod relief;
 mod sculpture;
 mod sdf;
-mod skull;
 mod skin_maps;
+mod skull;
+#[cfg(test)]
+mod tests;
 mod texels;
 mod unwrap;
 
@@ -65,20 +67,12 @@ pub fn built_in(detail: HeadDetail) -> Object {
 }
 
 fn surface(sculpture: &Sculpture, triangles: usize) -> Unwrapped {
-    let clock = std::time::Instant::now();
-    let lap = |what: &str| eprintln!("{what} after {:.2} s", clock.elapsed().as_secs_f32());
     let edge_length_mm = |p: Vec3| detail::edge_length_mm(sculpture, p);
     let net = mesher::surface_nets(sculpture, CELL_MM);
-    lap("surface net");
     let thin = decimate::decimate(net, triangles.min(UNWRAPPED_TRIANGLES), &edge_length_mm);
-    lap("decimation");
     let round = polish::polish(thin, sculpture, 3);
-    lap("polish");
     let unwrapped = unwrap::unwrap(round, sculpture);
-    lap("texture coordinates");
-    let fine = refine::refine(unwrapped, sculpture, triangles, &edge_length_mm);
-    lap("refinement");
-    fine
+    refine::refine(unwrapped, sculpture, triangles, &edge_length_mm)
 }
 
 /// One vertex for each texture coordinate.

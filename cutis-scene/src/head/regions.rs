@@ -173,7 +173,5 @@ fn is_disc(list: &[usize], surface: &Surface, piece: &[u32], neighbours: &[[u32;
     starts.sort_unstable();
     starts.dedup();
     let edges = inner / 2 + border;
-    let chi = points.len() as i64 + list.len() as i64 - edges as i64;
-    if chi != 1 || starts.len() != border { let c = list.iter().map(|&t| centre(surface, t)).sum::<Vec3>() / list.len() as f32; eprintln!("BAD {:?} tris {} euler {} border {} distinct {}", c, list.len(), chi, border, starts.len()); }
     border > 0 && starts.len() == border && points.len() + list.len() == edges + 1
 }

@@ -83,10 +83,8 @@ impl Sweep {
     pub fn new(knots: &[[f32; 4]]) -> Self {
         let beads: Vec<_> =
             spline(knots, 8).into_iter().map(|k| (Vec3::new(k[0], k[1], k[2]), k[3])).collect();
-        let spans = (0..beads.len() - 1)
-            .step_by(4)
-            .map(|i| span(&beads[i..(i + 5).min(beads.len())]))
-            .collect();
+        let spans =
+            (0..beads.len() - 1).step_by(4).map(|i| span(&beads[i..(i + 5).min(beads.len())])).collect();
         Self { spans, bounds: bounds(&beads) }
     }
 

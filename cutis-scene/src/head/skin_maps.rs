@@ -29,10 +29,17 @@ pub fn material(object: &Object, sculpture: &Sculpture, size: u32) -> Material {
     let finder = AreaFinder::new(sculpture);
     let texels: Vec<SkinTexel> = (0..map.owner.len())
         .into_par_iter()
-        .map(|i| if map.owner[i] == NOBODY { SkinTexel::nowhere() } else { SkinTexel::at(positions_mm[i], &finder) })
+        .map(|i| {
+            if map.owner[i] == NOBODY {
+                SkinTexel::nowhere()
+            } else {
+                SkinTexel::at(positions_mm[i], &finder)
+            }
+        })
         .collect();
     let heights_mm: Vec<f32> = texels.iter().map(|t| t.height_mm).collect();
-    let shine = texture(size, Texels::Linear8(texels.iter().map(|t| [t.shine[0], t.shine[1], 0, 255]).collect()));
+    let shine =
+        texture(size, Texels::Linear8(texels.iter().map(|t| [t.shine[0], t.shine[1], 0, 255]).collect()));
     let albedo = texture(size, Texels::Srgb8(texels.iter().map(|t| t.albedo).collect()));
     let normal = Arc::new(normal_map(object, &map, &positions_mm, &heights_mm));
     Material {
@@ -83,7 +90,7 @@ fn colour(p: Vec3, areas: &Areas) -> Vec3 {
     let of_blood = Vec3::new(0.25, 1.25, 0.95) * blood;
     let of_melanin = Vec3::new(0.7, 1.1, 1.5) * melanin;
     // Veins and thin skin under the eyes: less red, hardly less blue.
-    let of_eye = Vec3::new(0.17, 0.16, 0.03) * areas.eye;
+    let of_eye = Vec3::new(0.12, 0.13, 0.04) * areas.eye;
     let mut c = SKIN * (-(of_blood + of_melanin + of_eye)).exp();
     let lip = LIPS * (1.0 + 0.12 * lattice(Vec3::new(p.x / 1.3, p.y / 6.0, p.z / 2.5), 7));
     c = c.lerp(lip, 0.9 * areas.lips);
@@ -106,8 +113,8 @@ fn hair(p: Vec3, areas: &Areas) -> f32 {
     }
     // Strokes lie outwards and up: noise stretched along that direction.
     let (along, across) = (p.x.abs() * 0.86 + p.y * 0.5, p.y * 0.86 - p.x.abs() * 0.5);
-    let strokes = lattice(Vec3::new(along / 5.5, across / 0.62, p.x.signum() * 9.0), 50);
-    let broken = 0.5 + 0.9 * strokes + 0.25 * lattice(p / 1.8, 51);
+    let strokes = lattice(Vec3::new(along / 5.5, across / 0.5, p.x.signum() * 9.0), 50);
+    let broken = 0.55 + 0.8 * strokes + 0.25 * lattice(p / 1.8, 51);
     lashes.max(areas.brow.sqrt() * (broken * 0.75 + areas.brow * 0.45).clamp(0.0, 0.95))
 }
 
@@ -115,7 +122,8 @@ fn hair(p: Vec3, areas: &Areas) -> f32 {
 fn shine(p: Vec3, areas: &Areas) -> (f32, f32) {
     let patches = 0.10 * octaves(p / 11.0, 2, 60) + 0.08 * lattice(p / 1.3, 62);
     let rho = 0.42 + 0.35 * areas.oily + 0.35 * areas.lips - 0.12 * areas.eye + patches - 0.4 * areas.brow;
-    let rough = 0.62 - 0.38 * areas.oily - 0.40 * areas.lips + 0.1 * areas.flushed - patches + 0.3 * areas.brow;
+    let rough =
+        0.62 - 0.38 * areas.oily - 0.40 * areas.lips + 0.1 * areas.flushed - patches + 0.3 * areas.brow;
     (rho, rough)
 }
 

@@ -33,7 +33,10 @@ impl TexelMap {
     fn claim(&mut self, triangle: u32, corners: [Vec2; 3]) {
         let [a, b, c] = corners;
         let area = (b - a).perp_dot(c - a);
-        let (lo, hi) = (a.min(b).min(c).ceil().max(Vec2::ZERO), a.max(b).max(c).min(Vec2::splat(self.size as f32 - 1.0)));
+        let (lo, hi) = (
+            a.min(b).min(c).ceil().max(Vec2::ZERO),
+            a.max(b).max(c).min(Vec2::splat(self.size as f32 - 1.0)),
+        );
         for y in lo.y as u32..(hi.y + 1.0) as u32 {
             for x in lo.x as u32..(hi.x + 1.0) as u32 {
                 let p = Vec2::new(x as f32, y as f32);
@@ -68,7 +71,8 @@ impl TexelMap {
             return None;
         }
         let [a, b, c] = object.mesh.corner_uvs(t as usize);
-        let p = Vec2::new((texel as u32 % self.size) as f32 + 0.5, (texel as u32 / self.size) as f32 + 0.5) / self.size as f32;
+        let p = Vec2::new((texel as u32 % self.size) as f32 + 0.5, (texel as u32 / self.size) as f32 + 0.5)
+            / self.size as f32;
         let area = (b - a).perp_dot(c - a);
         Some((t, (p - a).perp_dot(c - a) / area, (b - a).perp_dot(p - a) / area))
     }

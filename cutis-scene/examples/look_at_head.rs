@@ -3,7 +3,7 @@
 //! `cargo run --release -p cutis-scene --example look_at_head -- [folder] [triangles] [clay|skin]`
 
 use cutis_scene::head::{HeadDetail, built_in};
-use cutis_scene::{Bvh, Object, SurfacePoint};
+use cutis_scene::{Bvh, Object, SurfacePoint, Texels};
 use glam::{Mat3, Vec3};
 use rayon::prelude::*;
 use std::path::Path;
@@ -54,6 +54,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         head.closed,
         start.elapsed().as_secs_f32()
     );
+    report_texels(&head);
     let objects = [head];
     let bvh = Bvh::build(&objects);
     let mut sheet = image::RgbImage::new(4 * WIDTH, 2 * HEIGHT);
@@ -63,6 +64,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         image.save(Path::new(&folder).join(format!("{}.png", view.name)))?;
         image::imageops::replace(&mut sheet, &image, i64::from(i % 4 * WIDTH), i64::from(i / 4 * HEIGHT));
     }
+    save_maps(&objects[0], Path::new(&folder))?;
     layout(&objects[0]).save(Path::new(&folder).join("uv.png"))?;
     sheet.save(Path::new(&folder).join("sheet.png"))?;
     Ok(())
@@ -159,6 +161,61 @@ fn random_direction(seed: u32) -> Vec3 {
     let (z, angle) = (2.0 * hash(seed) - 1.0, std::f32::consts::TAU * hash(seed ^ 0x9e37_79b9));
     let r = (1.0 - z * z).max(0.0).sqrt();
     Vec3::new(r * angle.cos(), r * angle.sin(), z)
+}
+
+/// Saves the maps as they are stored.
+fn save_maps(head: &Object, folder: &Path) -> Result<(), Box<dyn std::error::Error>> {
+    let material = &head.material;
+    let maps = [
+        ("map_albedo", material.albedo.texture.as_ref()),
+        ("map_normal", material.normal.as_ref().map(|n| &n.texture)),
+        ("map_shine", material.rho_s.texture.as_ref().map(|(t, _)| t)),
+    ];
+    for (name, texture) in maps.into_iter().filter_map(|(name, t)| Some((name, t?))) {
+        let (Texels::Srgb8(texels) | Texels::Linear8(texels)) = texture.texels() else { continue };
+        let image =
+            image::RgbaImage::from_raw(texture.width(), texture.height(), texels.clone().into_flattened());
+        image.ok_or("map size")?.save(folder.join(format!("{name}.png")))?;
+    }
+    Ok(())
+}
+
+/// Prints how large a texel is on the face and how the size varies.
+fn report_texels(head: &Object) {
+    let mesh = &head.mesh;
+    let face = |t: &usize| {
+        let p = mesh.corners_mm(*t).iter().sum::<Vec3>() / 3.0;
+        p.z > 30.0 && p.y > -115.0 && p.y < 90.0
+    };
+    let mut sizes: Vec<(f32, f32)> = (0..mesh.triangles.len())
+        .filter(face)
+        .map(|t| {
+            let [a, b, c] = mesh.corner_uvs(t);
+            let texels = 0.5 * (b - a).perp_dot(c - a).abs() * 2048.0 * 2048.0;
+            ((mesh.area_mm2(t) / texels).sqrt(), mesh.area_mm2(t))
+        })
+        .collect();
+    sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let whole: f32 = sizes.iter().map(|s| s.1).sum();
+    let quantile = |q: f32| {
+        let mut below = 0.0;
+        sizes
+            .iter()
+            .find(|s| {
+                below += s.1;
+                below >= q * whole
+            })
+            .map_or(0.0, |s| s.0)
+    };
+    eprintln!(
+        "texel on the face, mm at 2048: 1 % {:.3}, 10 % {:.3}, half {:.3}, 90 % {:.3}, 99 % {:.3}; overlap {:.5}",
+        quantile(0.01),
+        quantile(0.1),
+        quantile(0.5),
+        quantile(0.9),
+        quantile(0.99),
+        cutis_scene::Charts::overlap_fraction(mesh, 2048)
+    );
 }
 
 /// The charts of the texture, each in its colour, with the edges of every triangle darker.

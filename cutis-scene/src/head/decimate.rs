@@ -6,6 +6,7 @@
 
 use super::mesher::Surface;
 use glam::Vec3;
+use rayon::prelude::*;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -13,7 +14,11 @@ use std::collections::BinaryHeap;
 const MOST_TRIANGLES_AT_A_POINT: usize = 9;
 
 /// Collapses edges until `triangles` are left; `edge_length_mm` says how long edges should be where.
-pub fn decimate(surface: Surface, triangles: usize, edge_length_mm: &(impl Fn(Vec3) -> f32 + Sync)) -> Surface {
+pub fn decimate(
+    surface: Surface,
+    triangles: usize,
+    edge_length_mm: &(impl Fn(Vec3) -> f32 + Sync),
+) -> Surface {
     let mut thinning = Thinning::new(surface, edge_length_mm);
     while thinning.alive > triangles && thinning.step() {}
     thinning.finish()
@@ -34,7 +39,6 @@ struct Thinning<'a, F> {
 
 impl<'a, F: Fn(Vec3) -> f32 + Sync> Thinning<'a, F> {
     fn new(surface: Surface, edge_length_mm: &'a F) -> Self {
-        use rayon::prelude::*;
         let points = surface.points_mm.len();
         let mut around = vec![Vec::with_capacity(7); points];
         for (t, corners) in surface.triangles.iter().enumerate() {
@@ -50,8 +54,10 @@ impl<'a, F: Fn(Vec3) -> f32 + Sync> Thinning<'a, F> {
             around,
             edge_length_mm,
         };
-        let edges: Vec<_> = thinning.surface.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
-        thinning.queue = edges.iter().filter(|[a, b]| a < b).map(|&edge| Reverse(thinning.entry(edge))).collect();
+        let edges: Vec<_> =
+            thinning.surface.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]).collect();
+        thinning.queue =
+            edges.iter().filter(|[a, b]| a < b).map(|&edge| Reverse(thinning.entry(edge))).collect();
         thinning
     }
 
@@ -72,23 +78,26 @@ impl<'a, F: Fn(Vec3) -> f32 + Sync> Thinning<'a, F> {
         true
     }
 
-    fn neighbours(&self, point: u32) -> Vec<u32> {
-        let mut list: Vec<u32> = self.around[point as usize]
-            .iter()
-            .flat_map(|&t| self.surface.triangles[t as usize])
-            .filter(|&c| c != point)
-            .collect();
-        list.sort_unstable();
-        list.dedup();
-        list
+    /// The points around a point: in each of its triangles the corner that follows it.
+    fn neighbours(&self, point: u32) -> impl Iterator<Item = u32> + Clone {
+        self.around[point as usize].iter().map(move |&t| {
+            let [a, b, c] = self.surface.triangles[t as usize];
+            if a == point {
+                b
+            } else if b == point {
+                c
+            } else {
+                a
+            }
+        })
     }
 
     fn allowed(&self, a: u32, b: u32) -> bool {
         let (of_a, of_b) = (self.neighbours(a), self.neighbours(b));
-        if of_a.len() + of_b.len() > MOST_TRIANGLES_AT_A_POINT + 4 {
+        if self.around[a as usize].len() + self.around[b as usize].len() > MOST_TRIANGLES_AT_A_POINT + 4 {
             return false;
         }
-        let common = of_a.iter().filter(|n| of_b.binary_search(n).is_ok()).count();
+        let common = of_a.filter(|n| of_b.clone().any(|m| m == *n)).count();
         common == 2 && self.keeps_faces(a, b) && self.keeps_faces(b, a)
     }
 
@@ -127,9 +136,8 @@ impl<'a, F: Fn(Vec3) -> f32 + Sync> Thinning<'a, F> {
         self.wanted_mm[i] = (self.edge_length_mm)(middle);
         self.moves[i] += 1;
         self.moves[j] += 1;
-        for n in self.neighbours(a) {
-            self.queue.push(Reverse(self.entry([a.min(n), a.max(n)])));
-        }
+        let renewed: Vec<_> = self.neighbours(a).map(|n| Reverse(self.entry([a.min(n), a.max(n)]))).collect();
+        self.queue.extend(renewed);
     }
 
     fn finish(self) -> Surface {

@@ -36,9 +36,9 @@ impl Ear {
             axes: [back * cos_off + Vec3::X * sin_off, up, Vec3::X * cos_off - back * sin_off],
             plate: EarPlate::new(),
             helix: Sweep::new(&[
-                [12.0, 0.0, -8.5, 1.5],
-                [8.5, 2.5, -4.5, 1.8],
-                [4.8, 7.0, 0.2, 1.9],
+                [8.5, 2.5, -6.0, 1.2],
+                [6.0, 5.0, -2.5, 1.7],
+                [4.4, 8.5, 0.4, 1.9],
                 [3.6, 14.0, 1.8, 1.9],
                 [7.2, 23.5, 2.2, 1.8],
                 [15.0, 29.4, 2.0, 1.7],
@@ -94,6 +94,13 @@ impl Ear {
         let past_rim = (plate.outside_mm + half).max(0.0);
         let slab = Vec2::new(past_rim, plate.off_mm(q.z)).length() - half;
         soft_union(slab, self.helix.distance(q, 8.0), 1.6)
+    }
+
+    /// Whether a point lies in the hollow, on the outer side of the plate.
+    pub fn in_hollow(&self, side: Vec3) -> bool {
+        let q = self.local(side);
+        let plate = self.plate.at(Vec2::new(q.x, q.y));
+        plate.outside_concha_mm < 0.5 && plate.off_mm(q.z) > -1.0 && q.z < 2.0
     }
 
     /// Signed distance from the middle of the plate: positive on the side that faces out, mm.

@@ -79,6 +79,8 @@ struct Drawing {
     concha: Curve2,
     antihelix: Curve2,
     lower_crus: Curve2,
+    /// Root of the helix, which divides the hollow.
+    root: Curve2,
 }
 
 impl Drawing {
@@ -121,6 +123,7 @@ impl Drawing {
                 [19.5, 16.0],
                 [15.5, 23.0],
             ]),
+            root: Curve2::open(&[[13.0, -1.0], [8.5, 2.5], [4.8, 7.0]]),
             lower_crus: Curve2::open(&[[23.0, 7.0], [17.0, 11.0], [10.0, 13.0], [4.0, 13.0]]),
         }
     }
@@ -135,7 +138,8 @@ impl Drawing {
         let dish = ((q - Vec2::new(16.0, 0.0)).length() / 30.0).powi(2);
         // The larger of two ridges, rounded, so that the fork has no notch.
         let ridges = (antihelix.powi(4) + (0.8 * crus).powi(4)).sqrt().sqrt();
-        dish * 1.5 - concha * CONCHA_DEPTH_MM + 3.6 * ridges - fossa - 2.0 * lobe
+        let root = ridge(self.root.distance(q), 2.6) * smoothstep(15.0, 6.0, q.x);
+        dish * 1.5 - concha * (CONCHA_DEPTH_MM - 7.0 * root) + 3.6 * ridges - fossa - 2.0 * lobe
     }
 
     fn sample(&self, q: Vec2) -> Vec4 {

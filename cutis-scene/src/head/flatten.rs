@@ -25,7 +25,8 @@ const SOLVER_STEPS: usize = 60;
 /// Positions in the plane, in mm (lengths as near as possible to those in space), all triangles counter-clockwise.
 pub fn flatten(disc: &Disc) -> Vec<DVec2> {
     let mut flat = tutte(disc);
-    let corners: Vec<Corner> = disc.triangles.iter().map(|t| Corner::new(t.map(|c| disc.points_mm[c as usize]))).collect();
+    let corners: Vec<Corner> =
+        disc.triangles.iter().map(|t| Corner::new(t.map(|c| disc.points_mm[c as usize]))).collect();
     let space: f64 = corners.iter().map(|c| c.area).sum();
     let plane: f64 = disc.triangles.iter().map(|t| area(t.map(|c| flat[c as usize]))).sum();
     flat.iter_mut().for_each(|p| *p *= (space / plane).sqrt());
@@ -73,7 +74,8 @@ fn relax(links: &[Vec<(usize, f64)>], fixed: &[bool], flat: &mut [DVec2]) {
         let row = |i: usize| x[i] * diagonal[i] - links[i].iter().map(|&(j, w)| x[j] * w).sum::<DVec2>();
         (0..x.len()).map(|i| if fixed[i] { DVec2::ZERO } else { row(i) }).collect()
     };
-    let precondition = |r: &[DVec2]| -> Vec<DVec2> { r.iter().zip(&diagonal).map(|(r, d)| *r / *d).collect() };
+    let precondition =
+        |r: &[DVec2]| -> Vec<DVec2> { r.iter().zip(&diagonal).map(|(r, d)| *r / *d).collect() };
     // A few hundred points across need a few hundred steps; the residual decides.
     conjugate_gradients(flat, vec![DVec2::ZERO; links.len()], apply, precondition, 3000, 1e-10);
 }
@@ -175,8 +177,12 @@ impl Proxy {
 /// One outer round: solve the stand-in, then go as far towards its solution as the energy falls.
 fn improve(disc: &Disc, corners: &[Corner], flat: &mut Vec<DVec2>) {
     let place = |x: &[DVec2], t: &[u32; 3]| t.map(|i| x[i as usize]);
-    let proxies: Vec<Proxy> =
-        disc.triangles.iter().zip(corners).map(|(t, c)| Proxy::new(c.jacobian(place(flat, t)), c.area)).collect();
+    let proxies: Vec<Proxy> = disc
+        .triangles
+        .iter()
+        .zip(corners)
+        .map(|(t, c)| Proxy::new(c.jacobian(place(flat, t)), c.area))
+        .collect();
     let gather = |stress: &dyn Fn(usize) -> DMat2| {
         let mut sums = vec![DVec2::ZERO; flat.len()];
         for (k, t) in disc.triangles.iter().enumerate() {
@@ -192,7 +198,8 @@ fn improve(disc: &Disc, corners: &[Corner], flat: &mut Vec<DVec2>) {
     let inverses: Vec<DMat2> = blocks.iter().map(|b| b.inverse()).collect();
     let b = gather(&|k| proxies[k].m * proxies[k].target);
     let apply = |x: &[DVec2]| gather(&|k| proxies[k].m * corners[k].jacobian(place(x, &disc.triangles[k])));
-    let precondition = |r: &[DVec2]| -> Vec<DVec2> { r.iter().zip(&inverses).map(|(r, i)| *i * *r).collect() };
+    let precondition =
+        |r: &[DVec2]| -> Vec<DVec2> { r.iter().zip(&inverses).map(|(r, i)| *i * *r).collect() };
     let mut wish = flat.clone();
     conjugate_gradients(&mut wish, b, apply, precondition, SOLVER_STEPS, 1e-6);
     let direction: Vec<DVec2> = wish.iter().zip(flat.iter()).map(|(w, f)| *w - *f).collect();
@@ -200,7 +207,8 @@ fn improve(disc: &Disc, corners: &[Corner], flat: &mut Vec<DVec2>) {
 }
 
 fn line_search(disc: &Disc, corners: &[Corner], flat: &mut Vec<DVec2>, direction: &[DVec2]) {
-    let largest = disc.triangles.iter().map(|t| first_collapse(t.map(|i| (flat[i as usize], direction[i as usize]))));
+    let largest =
+        disc.triangles.iter().map(|t| first_collapse(t.map(|i| (flat[i as usize], direction[i as usize]))));
     let mut step = largest.fold(f64::INFINITY, f64::min).mul_add(0.9, 0.0).min(1.0);
     let before = total_energy(disc, corners, flat);
     // After 30 halvings nothing would move: the chart has converged.

@@ -90,7 +90,10 @@ impl Grid {
                 let inside = corners.map(|i| self.values_mm[i] < 0.0);
                 if let Some(nodes) = pinched(inside) {
                     let value = |c: &usize| self.values_mm[corners[*c]];
-                    let chosen = nodes.into_iter().filter(|&c| !inside[c]).min_by(|a, b| value(a).total_cmp(&value(b)));
+                    let chosen = nodes
+                        .into_iter()
+                        .filter(|&c| !inside[c])
+                        .min_by(|a, b| value(a).total_cmp(&value(b)));
                     let node = corners[chosen.expect("a pinched pattern has an outside corner")];
                     self.values_mm[node] = -1e-3; // a thousandth of a millimetre inside
                     touched.extend(steps.map(|s| node - s));
@@ -107,10 +110,12 @@ impl Grid {
         (0..self.nodes.z as usize - 1)
             .into_par_iter()
             .flat_map_iter(|z| {
-                (0..ny - 1).flat_map(move |y| (0..nx - 1).map(move |x| (z * ny + y) * nx + x)).filter(|&cell| {
-                    let first = self.values_mm[cell] < 0.0;
-                    steps[1..].iter().any(|s| (self.values_mm[cell + s] < 0.0) != first)
-                })
+                (0..ny - 1).flat_map(move |y| (0..nx - 1).map(move |x| (z * ny + y) * nx + x)).filter(
+                    |&cell| {
+                        let first = self.values_mm[cell] < 0.0;
+                        steps[1..].iter().any(|s| (self.values_mm[cell + s] < 0.0) != first)
+                    },
+                )
             })
             .collect()
     }

@@ -26,8 +26,10 @@ pub fn surface_nets(sculpture: &Sculpture, cell_mm: f32) -> Surface {
     for (v, &cell) in cells.iter().enumerate() {
         vertex_of_cell[cell] = v as u32;
     }
-    let points_mm = cells.par_iter().map(|&cell| sculpture.project(centre_of_crossings(&grid, cell), 1)).collect();
-    let triangles: Vec<_> = cells.iter().flat_map(|&cell| triangles_at(&grid, cell, &vertex_of_cell)).collect();
+    let points_mm =
+        cells.par_iter().map(|&cell| sculpture.project(centre_of_crossings(&grid, cell), 1)).collect();
+    let triangles: Vec<_> =
+        cells.iter().flat_map(|&cell| triangles_at(&grid, cell, &vertex_of_cell)).collect();
     largest_piece(Surface { points_mm, triangles })
 }
 

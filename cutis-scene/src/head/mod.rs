@@ -3,21 +3,31 @@
 //! A sculpture of distance functions is meshed by surface nets, thinned, unwrapped into a few charts and refined to
 //! the wanted number of triangles; its colour, relief and shine are computed per texel from positions in space.
 
+mod areas;
 mod decimate;
 mod detail;
 mod ear;
 mod ear_plate;
+mod eyes;
 mod face;
 mod flatten;
 mod grid;
 mod mesher;
+mod mouth;
 mod neck;
+mod noise;
+mod nose;
 mod polish;
 mod refine;
 mod regions;
+mod relief;
 mod sculpture;
 mod sdf;
+mod skin_maps;
 mod skull;
+#[cfg(test)]
+mod tests;
+mod texels;
 mod unwrap;
 
 use crate::{Material, Mesh, Object};
@@ -51,24 +61,18 @@ const UNWRAPPED_TRIANGLES: usize = 24_000;
 pub fn built_in(detail: HeadDetail) -> Object {
     let sculpture = Sculpture::new();
     let surface = surface(&sculpture, detail.triangles);
-    Object::new("head", mesh(&surface, &sculpture), Material::default())
+    let mut head = Object::new("head", mesh(&surface, &sculpture), Material::default());
+    head.material = skin_maps::material(&head, &sculpture, detail.map_size);
+    head
 }
 
 fn surface(sculpture: &Sculpture, triangles: usize) -> Unwrapped {
-    let clock = std::time::Instant::now();
-    let lap = |what: &str| eprintln!("{what} after {:.2} s", clock.elapsed().as_secs_f32());
     let edge_length_mm = |p: Vec3| detail::edge_length_mm(sculpture, p);
     let net = mesher::surface_nets(sculpture, CELL_MM);
-    lap("surface net");
     let thin = decimate::decimate(net, triangles.min(UNWRAPPED_TRIANGLES), &edge_length_mm);
-    lap("decimation");
     let round = polish::polish(thin, sculpture, 3);
-    lap("polish");
     let unwrapped = unwrap::unwrap(round, sculpture);
-    lap("texture coordinates");
-    let fine = refine::refine(unwrapped, sculpture, triangles, &edge_length_mm);
-    lap("refinement");
-    fine
+    refine::refine(unwrapped, sculpture, triangles, &edge_length_mm)
 }
 
 /// One vertex for each texture coordinate.

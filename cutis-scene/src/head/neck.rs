@@ -17,10 +17,10 @@ impl Neck {
         Self {
             muscle: Sweep::new(&[
                 [58.0, -34.0, -32.0, 8.0],
-                [52.0, -72.0, -26.0, 10.0],
-                [42.0, -115.0, -8.0, 10.5],
-                [25.0, -155.0, 13.0, 9.5],
-                [10.0, -195.0, 26.0, 8.0],
+                [48.0, -72.0, -25.0, 9.5],
+                [39.0, -115.0, -8.0, 10.0],
+                [26.0, -155.0, 11.0, 9.0],
+                [12.0, -195.0, 20.0, 7.0],
             ]),
         }
     }
@@ -46,6 +46,7 @@ fn column(p: Vec3) -> f32 {
     let foot = smoothstep(-120.0, -215.0, p.y);
     let nape = smoothstep(-100.0, -40.0, p.y);
     let radius_mm = 51.0 + 13.0 * foot + 2.0 * nape;
-    let round = Vec2::new(p.x * (1.0 - 0.08 * foot), p.z - middle_z_mm).length() - radius_mm;
-    soft_intersection(round, p.y + 25.0, 20.0)
+    let round = Vec2::new(p.x * (1.05 - 0.1 * foot), p.z - middle_z_mm).length() - radius_mm;
+    // The upper end lies within the cranium.
+    soft_intersection(round, p.y - 8.0, 30.0)
 }

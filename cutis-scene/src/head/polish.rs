@@ -18,7 +18,8 @@ pub fn polish(mut surface: Surface, sculpture: &Sculpture, rounds: usize) -> Sur
 
 /// Flips every edge whose opposite angles add up to more than half a turn, each triangle at most once.
 fn flip_edges(surface: &mut Surface) {
-    let mut sides: HashMap<[u32; 2], Vec<(usize, usize)>> = HashMap::with_capacity(surface.triangles.len() * 3 / 2);
+    let mut sides: HashMap<[u32; 2], Vec<(usize, usize)>> =
+        HashMap::with_capacity(surface.triangles.len() * 3 / 2);
     for (t, c) in surface.triangles.iter().enumerate() {
         for i in 0..3 {
             let (a, b) = (c[i], c[(i + 1) % 3]);
@@ -34,7 +35,8 @@ fn flip_edges(surface: &mut Surface) {
         let (a, b) = (surface.triangles[t][i], surface.triangles[t][(i + 1) % 3]);
         let (c, d) = (surface.triangles[t][(i + 2) % 3], surface.triangles[s][(j + 2) % 3]);
         let crossing = [c.min(d), c.max(d)];
-        if touched[t] || touched[s] || edges.contains(&crossing) || !better(&surface.points_mm, [a, b, c, d]) {
+        if touched[t] || touched[s] || edges.contains(&crossing) || !better(&surface.points_mm, [a, b, c, d])
+        {
             continue;
         }
         surface.triangles[t] = [a, d, c];
@@ -47,14 +49,17 @@ fn flip_edges(surface: &mut Surface) {
 /// Whether the quad a–d–b–c is better cut along c–d than along a–b.
 fn better(points: &[Vec3], corners: [u32; 4]) -> bool {
     let [a, b, c, d] = corners.map(|i| points[i as usize]);
-    let angle = |at: Vec3| (a - at).normalize_or_zero().dot((b - at).normalize_or_zero()).clamp(-1.0, 1.0).acos();
+    let angle =
+        |at: Vec3| (a - at).normalize_or_zero().dot((b - at).normalize_or_zero()).clamp(-1.0, 1.0).acos();
     if angle(c) + angle(d) < std::f32::consts::PI + 0.1 {
         return false;
     }
     let normal = |p: Vec3, q: Vec3, r: Vec3| (q - p).cross(r - p).normalize_or_zero();
     let before = (normal(a, b, c) + normal(a, d, b)).normalize_or_zero();
     // Only on nearly flat ground: across a crease a flip would cut the crease.
-    normal(a, b, c).dot(normal(a, d, b)) > 0.8 && normal(a, d, c).dot(before) > 0.7 && normal(d, b, c).dot(before) > 0.7
+    normal(a, b, c).dot(normal(a, d, b)) > 0.8
+        && normal(a, d, c).dot(before) > 0.7
+        && normal(d, b, c).dot(before) > 0.7
 }
 
 fn slide(surface: &mut Surface, sculpture: &Sculpture) {

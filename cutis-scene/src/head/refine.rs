@@ -11,7 +11,12 @@ use std::collections::HashMap;
 type Edge = (u32, [u32; 2], [(u32, u8); 2]);
 
 /// Cuts edges until there are `triangles` of them; the relatively longest first.
-pub fn refine(mut surface: Unwrapped, sculpture: &Sculpture, triangles: usize, edge_length_mm: &(impl Fn(Vec3) -> f32 + Sync)) -> Unwrapped {
+pub fn refine(
+    mut surface: Unwrapped,
+    sculpture: &Sculpture,
+    triangles: usize,
+    edge_length_mm: &(impl Fn(Vec3) -> f32 + Sync),
+) -> Unwrapped {
     let mut wanted_mm: Vec<f32> = surface.surface.points_mm.par_iter().map(|&p| edge_length_mm(p)).collect();
     while surface.surface.triangles.len() + 1 < triangles {
         let first_new = surface.surface.points_mm.len();

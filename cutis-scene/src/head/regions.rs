@@ -47,10 +47,12 @@ fn centre(surface: &Surface, t: usize) -> Vec3 {
 /// 0 face, 1 back, 2 base, 3 and 4 ear outside, 5 and 6 ear inside.
 fn label(sculpture: &Sculpture, p: Vec3) -> u32 {
     let side = mirrored(p);
-    if sculpture.ear.near(side) && sculpture.without_ears(p).abs() > EAR_SHIFT_MM {
-        let bare = sculpture.without_ears(p);
-        let outside = bare < 0.0 || sculpture.ear.front_mm(side) > 0.0;
-        return if outside { 3 } else { 5 } + u32::from(p.x < 0.0);
+    if sculpture.ear.near(side) {
+        let (bare, hollow) = (sculpture.without_ears(p), sculpture.ear.in_hollow(side));
+        if hollow || bare.abs() > EAR_SHIFT_MM {
+            let outside = hollow || bare < 0.0 || sculpture.ear.front_mm(side) > 0.0;
+            return if outside { 3 } else { 5 } + u32::from(p.x < 0.0);
+        }
     }
     if p.y < CUT_Y_MM + 4.0 && sculpture.normal(p).y < -0.8 {
         return 2;

@@ -35,6 +35,12 @@ pub fn bell(p: Vec3, radii_mm: Vec3) -> f32 {
     (-(p / radii_mm).length_squared()).exp()
 }
 
+/// Profile of a groove of depth 1 at a distance from its middle line.
+pub fn groove(distance_mm: f32, width_mm: f32) -> f32 {
+    let t = distance_mm / width_mm;
+    (-t * t).exp()
+}
+
 /// 0 below `from`, 1 above `to`, smooth between.
 pub fn smoothstep(from: f32, to: f32, x: f32) -> f32 {
     let t = ((x - from) / (to - from)).clamp(0.0, 1.0);
@@ -77,10 +83,8 @@ impl Sweep {
     pub fn new(knots: &[[f32; 4]]) -> Self {
         let beads: Vec<_> =
             spline(knots, 8).into_iter().map(|k| (Vec3::new(k[0], k[1], k[2]), k[3])).collect();
-        let spans = (0..beads.len() - 1)
-            .step_by(4)
-            .map(|i| span(&beads[i..(i + 5).min(beads.len())]))
-            .collect();
+        let spans =
+            (0..beads.len() - 1).step_by(4).map(|i| span(&beads[i..(i + 5).min(beads.len())])).collect();
         Self { spans, bounds: bounds(&beads) }
     }
 

@@ -2,6 +2,7 @@
 
 use super::flatten::{Disc, flatten};
 use super::mesher::Surface;
+use super::neck::CUT_Y_MM;
 use super::regions::{neighbours, regions};
 use super::sculpture::Sculpture;
 use glam::{DVec2, Vec2};
@@ -9,7 +10,7 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// Free texels (of 2048) around every chart; two charts are twice as far apart.
-const GUTTER: f64 = 6.0 / 2048.0;
+const GUTTER: f64 = 8.0 / 2048.0;
 
 /// A closed surface with texture coordinates.
 #[derive(Debug, Clone, Default)]
@@ -33,12 +34,15 @@ struct Chart {
 /// Cuts, flattens and packs.
 pub fn unwrap(surface: Surface, sculpture: &Sculpture) -> Unwrapped {
     let regions = regions(&surface, sculpture);
-    eprintln!("regions done");
     let count = regions.iter().max().map_or(0, |&m| m + 1);
     let mut charts: Vec<Chart> = (0..count).into_par_iter().map(|r| chart(&surface, &regions, r)).collect();
-    charts.iter_mut().for_each(stand_upright);
+    charts.iter_mut().for_each(|chart| {
+        stand_upright(chart);
+        spare_texels(chart);
+    });
     pack(&mut charts);
-    let mut unwrapped = Unwrapped { triangle_uvs: vec![[0; 3]; surface.triangles.len()], surface, uvs: Vec::new() };
+    let mut unwrapped =
+        Unwrapped { triangle_uvs: vec![[0; 3]; surface.triangles.len()], surface, uvs: Vec::new() };
     for chart in charts {
         let first = unwrapped.uvs.len() as u32;
         unwrapped.uvs.extend(chart.flat.iter().map(|p| Vec2::new(p.x as f32, 1.0 - p.y as f32)));
@@ -76,11 +80,11 @@ fn border(triangles: &[[u32; 3]]) -> Vec<u32> {
         }
     }
     let Some(&start) = next.keys().min() else { return Vec::new() };
-    let mut loop_ = vec![start];
-    while let Some(&p) = next.get(&loop_[loop_.len() - 1]).filter(|&&p| p != start) {
-        loop_.push(p);
+    let mut ring = vec![start];
+    while let Some(&p) = next.get(&ring[ring.len() - 1]).filter(|&&p| p != start) {
+        ring.push(p);
     }
-    loop_
+    ring
 }
 
 /// Turns a chart so that up in space is up in the texture, as far as it goes.
@@ -97,11 +101,24 @@ fn stand_upright(chart: &mut Chart) {
     chart.flat.iter_mut().for_each(|p| *p = turn.rotate(*p));
 }
 
+/// Shrinks the charts nobody looks at closely, so that the others get more texels.
+fn spare_texels(chart: &mut Chart) {
+    let points = &chart.disc.points_mm;
+    let middle = points.iter().sum::<glam::DVec3>() / points.len() as f64;
+    let scale = if middle.y < f64::from(CUT_Y_MM) + 10.0 {
+        0.5 // the end of the neck
+    } else if middle.z < -40.0 && middle.x.abs() < 20.0 {
+        0.85 // the back of the head
+    } else {
+        1.0
+    };
+    chart.flat.iter_mut().for_each(|p| *p *= scale);
+}
+
 /// Places the charts in the unit square: rows, the tallest first, as large as they fit, one scale for all.
 fn pack(charts: &mut [Chart]) {
-    let bounds = |flat: &[DVec2]| {
-        flat.iter().fold((DVec2::MAX, DVec2::MIN), |(lo, hi), &p| (lo.min(p), hi.max(p)))
-    };
+    let bounds =
+        |flat: &[DVec2]| flat.iter().fold((DVec2::MAX, DVec2::MIN), |(lo, hi), &p| (lo.min(p), hi.max(p)));
     let mut sizes = Vec::new();
     for chart in charts.iter_mut() {
         let (lo, hi) = bounds(&chart.flat);
@@ -114,34 +131,37 @@ fn pack(charts: &mut [Chart]) {
     let (mut too_small, mut fits) = (1.0, 4000.0);
     for _ in 0..40 {
         let middle = 0.5 * (too_small + fits);
-        if rows(&sizes, &order, middle).is_some() { fits = middle } else { too_small = middle }
+        match rows(&sizes, &order, middle) {
+            Some(_) => fits = middle,
+            None => too_small = middle,
+        }
     }
     for (chart, corner) in charts.iter_mut().zip(rows(&sizes, &order, fits).unwrap_or_default()) {
         chart.flat.iter_mut().for_each(|p| *p = *p / fits + corner);
     }
 }
 
-/// Lower left corners of all charts at a scale, if they fit. Charts stack in columns within a row.
+/// Lower left corners of all charts at a scale, if they fit: rows of columns, a column being filled up to the height
+/// of its row.
 fn rows(sizes: &[DVec2], order: &[usize], mm_per_unit: f64) -> Option<Vec<DVec2>> {
     let mut corners = vec![DVec2::ZERO; sizes.len()];
     let (mut floor, mut ceiling) = (0.0f64, 0.0f64);
-    let (mut column, mut column_end, mut used) = (0.0f64, 0.0f64, 0.0f64);
+    // The current column: where it begins and ends, and how far up it is used.
+    let (mut left, mut right, mut used) = (0.0f64, 0.0f64, 0.0f64);
     for &i in order {
         let size = sizes[i] / mm_per_unit + DVec2::splat(2.0 * GUTTER);
-        let stacks = used > floor && used + size.y <= ceiling && column + size.x <= column_end.max(column + size.x);
-        if !(stacks && column + size.x <= 1.0 && (size.x <= column_end - column || column_end + size.x > 1.0)) {
-            if column_end + size.x > 1.0 {
-                (floor, column, column_end) = (ceiling, 0.0, 0.0);
-            } else {
-                column = column_end;
+        let stacks = used > floor && used + size.y <= ceiling && left + size.x <= right;
+        if !stacks {
+            left = right;
+            if left + size.x > 1.0 {
+                (floor, left) = (ceiling, 0.0);
             }
-            used = floor;
+            (used, right) = (floor, left + size.x);
         }
-        corners[i] = DVec2::new(column, used) + DVec2::splat(GUTTER);
+        corners[i] = DVec2::new(left, used) + DVec2::splat(GUTTER);
         used += size.y;
         ceiling = ceiling.max(used);
-        column_end = column_end.max(column + size.x);
-        if ceiling > 1.0 || column_end > 1.0 {
+        if ceiling > 1.0 || right > 1.0 {
             return None;
         }
     }

@@ -55,6 +55,7 @@ fn backlit(thickness_mm: f32) -> Scene {
         lights: vec![light],
         environment: None,
         camera,
+        background: None,
         warnings: Vec::new(),
     }
 }

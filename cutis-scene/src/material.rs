@@ -109,13 +109,14 @@ impl ScalarMap {
         Self { offset: value, gain: 0.0, texture: None }
     }
 
-    /// Specular intensity from a map of it: `rho_s = 0.18 + 0.16 red`, the range over a face that d'Eon et al. 2007
-    /// (GPU Gems 3, section 14.3.1) take from measurements.
+    /// Specular intensity from a map of it: `rho_s = pi (0.18 + 0.16 red)`. Lee 2008 takes 0.18 + 0.16 red for a lobe
+    /// whose Beckmann term lacks its 1/pi; the lobe here has it.
     pub fn measured_rho_s(texture: Arc<Texture>) -> Self {
-        Self { offset: 0.18, gain: 0.16, texture: Some((texture, 0)) }
+        use std::f32::consts::PI;
+        Self { offset: 0.18 * PI, gain: 0.16 * PI, texture: Some((texture, 0)) }
     }
 
-    /// Beckmann roughness from a map of it: `m = 0.23 + 0.09 red`; source as for [`Self::measured_rho_s`].
+    /// Beckmann roughness from a map of it: `m = 0.23 + 0.09 red` (Lee 2008).
     pub fn measured_roughness(texture: Arc<Texture>) -> Self {
         Self { offset: 0.23, gain: 0.09, texture: Some((texture, 0)) }
     }

@@ -14,6 +14,8 @@ pub struct Scene {
     pub environment: Option<Environment>,
     /// Where the picture is taken from.
     pub camera: Camera,
+    /// Radiance behind everything where the environment is not seen, W/(m² sr); none leaves the picture transparent.
+    pub background: Option<Vec3>,
     /// Things that were guessed or left out while reading, in words, for the person who runs the program.
     pub warnings: Vec<String>,
 }

@@ -17,6 +17,9 @@ const KEY_W_PER_M2: f32 = 3.0;
 /// Irradiance of the rim light at the middle of the scene, W/m².
 const RIM_W_PER_M2: f32 = 6.0;
 
+/// Radiance of the backdrop, W/(m² sr): dark, so that light through an ear shows.
+pub const STUDIO_BACKGROUND: Vec3 = Vec3::new(0.012, 0.013, 0.016);
+
 /// A soft rectangle of light on the studio's walls.
 struct Panel {
     /// Unit direction of its middle.
@@ -55,7 +58,7 @@ pub fn studio_lights(bounds_mm: [Vec3; 2]) -> Vec<Light> {
     // Ears sit a little above the middle of a box that reaches down to the neck or the shoulders.
     let ears = centre + Vec3::Y * (0.12 * height_mm);
     let key_dir = Vec3::new(-0.55, 0.5, 0.75).normalize();
-    let rim_dir = Vec3::new(0.75, 0.0, -0.66).normalize();
+    let rim_dir = Vec3::new(0.42, 0.1, -0.9).normalize();
     vec![
         lamp(centre, key_dir, 4.0 * radius_mm, KEY_W_PER_M2, Vec3::new(1.0, 0.96, 0.9), 25.0),
         lamp(ears, rim_dir, 3.0 * radius_mm, RIM_W_PER_M2, Vec3::new(1.0, 0.98, 0.95), 15.0),

@@ -41,7 +41,9 @@ fn the_callers_unit_and_textures_go_before_those_of_the_file() {
     assert_eq!(scene.bounds_mm().unwrap()[1].x, 300.0);
     let material = &scene.objects[0].material;
     assert!(material.albedo.texture.is_some() && material.normal.is_some());
-    assert!((material.rho_s.at(Vec2::ZERO) - (0.18 + 0.16 * 200.0 / 255.0)).abs() < 1e-6);
+    assert!(
+        (material.rho_s.at(Vec2::ZERO) - std::f32::consts::PI * (0.18 + 0.16 * 200.0 / 255.0)).abs() < 1e-6
+    );
 }
 
 #[test]

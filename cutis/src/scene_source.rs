@@ -1,7 +1,7 @@
 //! Where the scene comes from: a file, or the head that ships inside.
 
 use cutis_scene::head::{self, HeadDetail};
-use cutis_scene::studio::{studio_environment, studio_lights};
+use cutis_scene::studio::{STUDIO_BACKGROUND, studio_environment, studio_lights};
 use cutis_scene::{
     Camera, ColourMap, ColourSpace, Environment, NormalMap, NormalSpace, ReadOptions, ScalarMap, Scene,
     SceneError, Texture, read_image, read_scene,
@@ -12,6 +12,9 @@ use std::sync::Arc;
 
 /// Angle between the upper and the lower edge of a picture of the built-in head, rad: 25°, a portrait lens.
 const HEAD_FOV_RAD: f32 = 0.436_332_3;
+
+/// Where the built-in head is seen from: a three-quarter view from the side of the rim light.
+const THREE_QUARTER: Vec3 = Vec3::new(0.52, 0.05, 0.85);
 
 /// What is to be read or made.
 #[derive(Debug, Clone)]
@@ -52,7 +55,8 @@ impl SceneSource {
             objects: vec![object],
             lights: studio_lights(bounds_mm),
             environment: Some(studio_environment()),
-            camera: Camera::framing(bounds_mm, Vec3::Z, HEAD_FOV_RAD),
+            camera: Camera::framing(bounds_mm, THREE_QUARTER, HEAD_FOV_RAD),
+            background: Some(STUDIO_BACKGROUND),
             warnings: Vec::new(),
         };
         self.put_on_textures(&mut scene)?;

@@ -6,8 +6,9 @@
 //! surface. A read never mixes charts: it leaves out neighbours that belong to another one.
 
 use cutis_scene::{Object, SurfacePoint};
-use glam::{Vec2, Vec4};
+use glam::Vec2;
 use rayon::prelude::*;
+use std::ops::{Add, Mul};
 
 /// Marks a texel that no chart covers.
 pub const NO_CHART: u32 = u32::MAX;
@@ -118,7 +119,10 @@ impl ChartMap {
     }
 
     /// Bilinear read of `map` at `uv` from texels of one chart only. `None` if none of the four belongs to it.
-    pub fn sample(&self, map: &[Vec4], uv: Vec2, chart: u32) -> Option<Vec4> {
+    pub fn sample<T>(&self, map: &[T], uv: Vec2, chart: u32) -> Option<T>
+    where
+        T: Copy + Default + Add<Output = T> + Mul<f32, Output = T>,
+    {
         let p = uv * self.size as f32 - 0.5;
         let (x0, y0) = (p.x.floor(), p.y.floor());
         let (fx, fy) = (p.x - x0, p.y - y0);
@@ -131,15 +135,15 @@ impl ChartMap {
             (row[1] + column[0], (1.0 - fx) * fy),
             (row[1] + column[1], fx * fy),
         ];
-        let (mut sum, mut weight) = (Vec4::ZERO, 0.0);
+        let (mut sum, mut weight) = (T::default(), 0.0);
         for (texel, w) in taps {
             if self.chart[texel] == chart {
-                sum += map[texel] * w;
+                sum = sum + map[texel] * w;
                 weight += w;
             }
         }
         // Below a thousandth the quotient would only magnify rounding.
-        (weight > 1e-3).then(|| sum / weight)
+        (weight > 1e-3).then(|| sum * weight.recip())
     }
 }
 

@@ -11,7 +11,7 @@ use crate::prepare::{FilteredEnvironment, RhoDt};
 use crate::progress::Progress;
 use crate::sampling::random2;
 use crate::settings::Settings;
-use cutis_scene::{Bvh, Object, Scene, SurfacePoint};
+use cutis_scene::{Bvh, LightSample, Object, Scene, SurfacePoint};
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
@@ -44,9 +44,10 @@ pub struct IrradianceInputs<'a> {
 pub struct Irradiance {
     /// Layer 0: irradiance, and distance for light 0; then distances of the other lights, four to a layer.
     pub layers: Vec<Vec<Vec4>>,
-    /// Of the irradiance that comes from lights, the share of each: four lights to a layer. Empty for a single light,
-    /// whose share is 1.
-    pub shares: Vec<Vec<Vec4>>,
+    /// For every light, the fraction of it that is seen.
+    pub visibility: Vec<Vec<f32>>,
+    /// For every light, its share of the irradiance that comes from lights. Empty for a single light, whose share is 1.
+    pub shares: Vec<Vec<f32>>,
 }
 
 /// Layer and component that hold a light's distance.
@@ -54,77 +55,90 @@ pub fn distance_slot(light: usize) -> (usize, usize) {
     if light == 0 { (0, 3) } else { (1 + (light - 1) / 4, (light - 1) % 4) }
 }
 
+/// One row of everything that is filled.
+struct Row<'a> {
+    layers: Vec<&'a mut [Vec4]>,
+    visibility: Vec<&'a mut [f32]>,
+    shares: Vec<&'a mut [f32]>,
+}
+
 /// Fills the texture.
 pub fn irradiance(inputs: &IrradianceInputs, progress: &dyn Progress) -> Irradiance {
     let size = inputs.atlas.size;
     let lights = inputs.scene.lights.len();
-    let layer_count = 1 + lights.saturating_sub(1).div_ceil(4);
-    let share_count = if lights > 1 { lights.div_ceil(4) } else { 0 };
+    let mut filled = Irradiance {
+        layers: vec![vec![Vec4::ZERO; size * size]; 1 + lights.saturating_sub(1).div_ceil(4)],
+        visibility: vec![vec![0.0; size * size]; lights],
+        shares: vec![vec![0.0; size * size]; if lights > 1 { lights } else { 0 }],
+    };
     progress.begin("irradiance", size as u64);
-    let mut layers = vec![vec![Vec4::ZERO; size * size]; layer_count + share_count];
-    let mut rows: Vec<Vec<&mut [Vec4]>> = (0..size).map(|_| Vec::with_capacity(layers.len())).collect();
-    for layer in &mut layers {
-        rows.iter_mut().zip(layer.chunks_mut(size)).for_each(|(row, slice)| row.push(slice));
-    }
-    rows.into_par_iter().enumerate().for_each(|(y, mut row)| {
+    rows(&mut filled, size).into_par_iter().enumerate().for_each(|(y, mut row)| {
         for x in 0..size {
-            light_texel(inputs, x, y, layer_count, &mut row);
+            light_texel(inputs, x, y, &mut row);
         }
         progress.advance(1);
     });
-    let shares = layers.split_off(layer_count);
-    Irradiance { layers, shares }
+    filled
 }
 
-fn light_texel(inputs: &IrradianceInputs, x: usize, y: usize, layer_count: usize, row: &mut [&mut [Vec4]]) {
+fn rows(filled: &mut Irradiance, size: usize) -> Vec<Row<'_>> {
+    let empty = || Row { layers: Vec::new(), visibility: Vec::new(), shares: Vec::new() };
+    let mut rows: Vec<Row> = (0..size).map(|_| empty()).collect();
+    for layer in &mut filled.layers {
+        rows.iter_mut().zip(layer.chunks_mut(size)).for_each(|(row, slice)| row.layers.push(slice));
+    }
+    for plane in &mut filled.visibility {
+        rows.iter_mut().zip(plane.chunks_mut(size)).for_each(|(row, slice)| row.visibility.push(slice));
+    }
+    for plane in &mut filled.shares {
+        rows.iter_mut().zip(plane.chunks_mut(size)).for_each(|(row, slice)| row.shares.push(slice));
+    }
+    rows
+}
+
+fn light_texel(inputs: &IrradianceInputs, x: usize, y: usize, row: &mut Row) {
     let texel = y * inputs.atlas.size + x;
     let Some(point) = inputs.atlas.surface_point(inputs.object, texel) else { return };
     let material = &inputs.object.material;
     let normal = shading_normal(inputs.object, &point);
     let (rho_s, roughness) = (material.rho_s.at(point.uv), material.roughness.at(point.uv));
     let mut from_lights = Vec3::ZERO;
-    let shares = row.len() > layer_count;
     for (l, light) in inputs.scene.lights.iter().enumerate() {
-        let received = from_light(inputs, l, &point, normal, [x, y]);
-        let cos = normal.dot(light.sample(point.position_mm).dir_to_light);
-        let entered = received * inputs.rho_dt.at(cos, roughness, rho_s);
+        let towards = light.sample(point.position_mm);
+        let visible = visibility(inputs, l, &point, &towards, [x, y]);
+        // Relief may turn a normal away from a light that the smooth surface faces.
+        let cos = normal.dot(towards.dir_to_light).max(0.0);
+        let entered = towards.irradiance_w_per_m2 * (cos * visible * inputs.rho_dt.at(cos, roughness, rho_s));
         from_lights += entered;
+        row.visibility[l][x] = visible;
         let (layer, component) = distance_slot(l);
-        row[layer][x][component] = distance_mm(inputs, l, &point);
-        if shares {
-            row[layer_count + l / 4][x][l % 4] = entered.element_sum();
+        row.layers[layer][x][component] = distance_mm(inputs, l, &point);
+        if let Some(share) = row.shares.get_mut(l) {
+            share[x] = entered.element_sum();
         }
     }
-    for l in 0..if shares { inputs.scene.lights.len() } else { 0 } {
-        row[layer_count + l / 4][x][l % 4] /= from_lights.element_sum().max(f32::MIN_POSITIVE);
-    }
-    let from_environment = from_environment(inputs, &point, normal, inputs.atlas.charts.chart[texel])
-        * inputs.rho_dt.mean(roughness, rho_s);
+    let whole = from_lights.element_sum().max(f32::MIN_POSITIVE);
+    row.shares.iter_mut().for_each(|share| share[x] /= whole);
+    let chart = inputs.atlas.charts.chart[texel];
+    let from_environment =
+        from_environment(inputs, &point, normal, chart) * inputs.rho_dt.mean(roughness, rho_s);
     let film = material.albedo.at(point.uv).max(Vec3::ZERO).powf(material.albedo_mix);
-    row[0][x] = ((from_lights + from_environment) * film).extend(row[0][x].w);
+    row.layers[0][x] = ((from_lights + from_environment) * film).extend(row.layers[0][x].w);
 }
 
-/// Irradiance from one light, shadows included, W/m².
-fn from_light(
+/// Fraction of a light that the place sees; 0 where the smooth surface faces away from it.
+fn visibility(
     inputs: &IrradianceInputs,
     l: usize,
     point: &SurfacePoint,
-    normal: Vec3,
+    towards: &LightSample,
     [x, y]: [usize; 2],
-) -> Vec3 {
-    let light = &inputs.scene.lights[l];
-    let towards = light.sample(point.position_mm);
-    let cos = normal.dot(towards.dir_to_light);
-    // Relief may turn a normal towards a light that the smooth surface does not face.
-    if cos <= 0.0
-        || point.normal.dot(towards.dir_to_light) <= 0.0
-        || towards.irradiance_w_per_m2 == Vec3::ZERO
-    {
-        return Vec3::ZERO;
+) -> f32 {
+    if point.normal.dot(towards.dir_to_light) <= 0.0 || towards.irradiance_w_per_m2 == Vec3::ZERO {
+        return 0.0;
     }
     let shift = random2(x as u32, y as u32, STREAM + l as u32, inputs.settings.seed);
-    let visible = visible_fraction(inputs.bvh, point, light, inputs.settings.shadow_samples, shift);
-    towards.irradiance_w_per_m2 * (cos * visible)
+    visible_fraction(inputs.bvh, point, &inputs.scene.lights[l], inputs.settings.shadow_samples, shift)
 }
 
 fn from_environment(inputs: &IrradianceInputs, point: &SurfacePoint, normal: Vec3, chart: u32) -> Vec3 {

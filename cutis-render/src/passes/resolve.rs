@@ -7,7 +7,7 @@ use crate::passes::diffusion::Diffused;
 use crate::passes::irradiance::{distance_slot, shading_normal};
 use crate::passes::specular::Shine;
 use crate::passes::transmission::{slab_weights, transmitted};
-use crate::passes::visibility::{LightFacing, faces, light_facing_surface, visible_fraction};
+use crate::passes::visibility::{LightFacing, faces, light_facing_surface};
 use crate::prepare::{FilteredEnvironment, Kernel, RhoDt};
 use crate::settings::Aov;
 use cutis_scene::{Bvh, Hit, Object, Scene, SurfacePoint};
@@ -24,8 +24,10 @@ pub struct ObjectMaps {
     pub ambient: Ambient,
     /// Light under its surface.
     pub diffused: Diffused,
+    /// Fraction of each light that is seen.
+    pub visibility: Vec<Vec<f32>>,
     /// Share of each light in the irradiance; empty for a single light.
-    pub shares: Vec<Vec<Vec4>>,
+    pub shares: Vec<Vec<f32>>,
     /// Its diffusion kernel.
     pub kernel: Kernel,
     /// What its surface lets through.
@@ -72,10 +74,10 @@ struct Place<'a> {
 }
 
 impl Resolve<'_> {
-    /// What the eye sees along a ray. `turn` shifts the sample on each light's disc.
-    pub fn sample(&self, eye_mm: Vec3, dir: Vec3, turn: Vec2) -> Sample {
+    /// What the eye sees along a ray.
+    pub fn sample(&self, eye_mm: Vec3, dir: Vec3) -> Sample {
         match self.bvh.closest(eye_mm, dir, f32::INFINITY) {
-            Some(hit) => self.shade(&hit, dir, turn),
+            Some(hit) => self.shade(&hit, dir),
             None => Sample { radiance: self.background(dir), layers: vec![Vec4::ZERO; self.aovs.len()] },
         }
     }
@@ -83,13 +85,13 @@ impl Resolve<'_> {
     fn background(&self, dir: Vec3) -> Vec4 {
         match &self.scene.environment {
             Some(environment) if environment.visible => environment.radiance(dir).extend(1.0),
-            _ => Vec4::ZERO,
+            _ => self.scene.background.map_or(Vec4::ZERO, |radiance| radiance.extend(1.0)),
         }
     }
 
-    fn shade(&self, hit: &Hit, dir: Vec3, turn: Vec2) -> Sample {
+    fn shade(&self, hit: &Hit, dir: Vec3) -> Sample {
         let place = self.place(hit, dir);
-        let parts = self.parts(&place, -dir, turn);
+        let parts = self.parts(&place, -dir);
         let radiance = (parts.diffuse + parts.transmission + parts.specular).extend(1.0);
         let layers = self.aovs.iter().map(|&aov| self.layer(aov, &place, &parts)).collect();
         Sample { radiance, layers }
@@ -104,7 +106,7 @@ impl Resolve<'_> {
     }
 
     /// The sums of the paper's final pass.
-    fn parts(&self, place: &Place, dir_to_eye: Vec3, turn: Vec2) -> Parts {
+    fn parts(&self, place: &Place, dir_to_eye: Vec3) -> Parts {
         let uv = place.point.uv;
         let material = &place.object.material;
         let shine = Shine {
@@ -122,24 +124,22 @@ impl Resolve<'_> {
         Parts {
             diffuse: local * leaving,
             transmission: self.through_the_body(place) * leaving,
-            specular: self.specular(place, &shine, turn),
+            specular: self.specular(place, &shine),
         }
     }
 
-    fn specular(&self, place: &Place, shine: &Shine, turn: Vec2) -> Vec3 {
+    fn specular(&self, place: &Place, shine: &Shine) -> Vec3 {
+        let Place { maps, point, chart, .. } = place;
         let mut sum = Vec3::ZERO;
-        for light in &self.scene.lights {
-            let towards = light.sample(place.point.position_mm);
-            if faces(&place.point, light) {
-                let reflected = shine.from_light(&towards);
-                if reflected != Vec3::ZERO {
-                    sum += reflected * visible_fraction(self.bvh, &place.point, light, 1, turn);
-                }
+        for (light, visibility) in self.scene.lights.iter().zip(&maps.visibility) {
+            if faces(point, light) {
+                let visible = maps.atlas.charts.sample(visibility, point.uv, *chart).unwrap_or(0.0);
+                sum += shine.from_light(&light.sample(point.position_mm)) * visible;
             }
         }
         if let Some(environment) = self.environment {
-            let (_, open) = place.maps.ambient.at(place.point.uv, place.chart, place.point.normal);
-            sum += shine.from_environment(environment, &place.maps.rho_dt, open);
+            let (_, open) = maps.ambient.at(point.uv, *chart, point.normal);
+            sum += shine.from_environment(environment, &maps.rho_dt, open);
         }
         sum
     }
@@ -168,8 +168,8 @@ impl Resolve<'_> {
     /// Share of a light in what falls on its light-facing side, so that light counted once is not counted again.
     fn share(&self, l: usize, there: &LightFacing) -> f32 {
         let maps = &self.maps[there.object];
-        match maps.shares.get(l / 4) {
-            Some(shares) => maps.atlas.charts.sample(shares, there.uv, there.chart).map_or(0.0, |s| s[l % 4]),
+        match maps.shares.get(l) {
+            Some(shares) => maps.atlas.charts.sample(shares, there.uv, there.chart).unwrap_or(0.0),
             None => 1.0,
         }
     }

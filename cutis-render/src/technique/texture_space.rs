@@ -160,7 +160,16 @@ impl ObjectPass<'_> {
         let fields = Fields { layers: lit.layers, stretch_mm: stretch_mm.clone() };
         let diffused =
             clock.time("blur", || Separable.diffuse(charts, fields, &kernel.variances_mm2, progress));
-        Ok(ObjectMaps { atlas, stretch_mm, ambient, diffused, shares: lit.shares, kernel, rho_dt })
+        Ok(ObjectMaps {
+            atlas,
+            stretch_mm,
+            ambient,
+            diffused,
+            visibility: lit.visibility,
+            shares: lit.shares,
+            kernel,
+            rho_dt,
+        })
     }
 
     fn kernel(&self) -> Result<Kernel, RenderError> {
@@ -231,8 +240,7 @@ fn pixel(resolve: &Resolve, settings: &Settings, x: u32, y: u32) -> Sample {
         let within = (Vec2::new((i % grid) as f32, (i / grid) as f32) + jitter) / grid as f32;
         let place = (Vec2::new(x as f32, y as f32) + within) / size;
         let ndc = Vec2::new(2.0 * place.x - 1.0, 1.0 - 2.0 * place.y);
-        let turn = random2(y, x, STREAM + (i << 8), settings.seed);
-        let sample = resolve.sample(camera.position_mm, camera.dir_through(ndc, size.x / size.y), turn);
+        let sample = resolve.sample(camera.position_mm, camera.dir_through(ndc, size.x / size.y));
         sum.radiance += sample.radiance;
         sum.layers.iter_mut().zip(&sample.layers).for_each(|(sum, value)| *sum += *value);
     }

@@ -6,7 +6,7 @@ use super::image::ColourSpace;
 use super::textures::Textures;
 use super::{CameraChoice, Parts, Piece, ReadOptions};
 use crate::error::one_line;
-use crate::studio::{studio_environment, studio_lights};
+use crate::studio::{STUDIO_BACKGROUND, studio_environment, studio_lights};
 use crate::{Camera, ColourMap, NormalMap, NormalSpace, Object, ScalarMap, Scene, SceneError};
 use glam::Vec3;
 use std::path::{Path, PathBuf};
@@ -33,7 +33,8 @@ pub(super) fn finish(mut parts: Parts, file: &Path, options: &ReadOptions) -> Re
     }
     let placeholder = Camera::framing([Vec3::ZERO; 2], Vec3::Z, DEFAULT_FOV_RAD);
     let (lights, environment) = (parts.lights, parts.environment);
-    let mut scene = Scene { objects, lights, environment, camera: placeholder, warnings };
+    let mut scene =
+        Scene { objects, lights, environment, camera: placeholder, background: parts.background, warnings };
     let Some(bounds_mm) = scene.bounds_mm() else {
         return Err(SceneError::new(file, "whole scene", "there is no mesh to look at"));
     };
@@ -105,6 +106,7 @@ fn light_if_dark(scene: &mut Scene, bounds_mm: [Vec3; 2]) {
     if scene.lights.is_empty() && scene.environment.is_none() {
         scene.lights = studio_lights(bounds_mm);
         scene.environment = Some(studio_environment());
+        scene.background = scene.background.or(Some(STUDIO_BACKGROUND));
         scene
             .warnings
             .push("no lights were given: a studio with key, rim and room light was added".to_owned());

@@ -29,7 +29,7 @@ pub struct ReadOptions {
     pub albedo: Option<PathBuf>,
     /// Tangent-space normal map for all objects.
     pub normal: Option<PathBuf>,
-    /// Map of specular intensity for all objects: `rho_s = 0.18 + 0.16 red`.
+    /// Map of specular intensity for all objects: `rho_s = pi (0.18 + 0.16 red)`.
     pub specular: Option<PathBuf>,
     /// Folder that `assets:` stands for; goes before the environment variable `CUTIS_ASSETS`.
     pub assets_folder: Option<PathBuf>,
@@ -55,6 +55,7 @@ struct Parts {
     lights: Vec<Light>,
     environment: Option<Environment>,
     camera: CameraChoice,
+    background: Option<glam::Vec3>,
     warnings: Vec<String>,
 }
 

@@ -17,6 +17,8 @@ pub(in crate::read) struct CameraKeys {
     pitch_rad: f32,
     vertical_fov_rad: Option<f32>,
     exposure_ev: f32,
+    /// Radiance behind the scene, W/(m² sr).
+    background: Option<Vec3>,
 }
 
 /// Reads `[camera]`.
@@ -29,6 +31,7 @@ pub(super) fn read(keys: &Keys) -> Result<CameraKeys, SceneError> {
         "pitch_degrees",
         "vertical_fov_degrees",
         "exposure_ev",
+        "background",
     ])?;
     let position_mm = keys.vector_in("position_mm", -1e7..=1e7)?;
     for key in ["distance_mm", "yaw_degrees", "pitch_degrees"] {
@@ -52,10 +55,16 @@ pub(super) fn read(keys: &Keys) -> Result<CameraKeys, SceneError> {
         pitch_rad: degrees("pitch_degrees", -89.0..=89.0)?.unwrap_or(0.0),
         vertical_fov_rad: degrees("vertical_fov_degrees", 0.1..=170.0)?,
         exposure_ev: keys.number_in("exposure_ev", -32.0..=32.0)?.unwrap_or(0.0),
+        background: keys.vector_in("background", 0.0..=1e6)?,
     })
 }
 
 impl CameraKeys {
+    /// What the camera sees behind everything.
+    pub(super) fn background(&self) -> Option<Vec3> {
+        self.background
+    }
+
     /// The whole camera for a scene inside a box.
     pub(in crate::read) fn camera(&self, bounds_mm: [Vec3; 2]) -> Camera {
         let fov = self.vertical_fov_rad.unwrap_or(DEFAULT_FOV_RAD);

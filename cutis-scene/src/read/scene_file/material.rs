@@ -43,6 +43,9 @@ impl Change {
             }
         }
         set(&mut material.scattering, &self.scattering);
+        if self.scattering.as_ref().is_some_and(has_its_own_colour) && material.albedo.texture.is_none() {
+            material.albedo.factor = Vec3::ONE;
+        }
         set(&mut material.albedo, &self.albedo);
         set(&mut material.albedo_mix, &self.albedo_mix);
         set(&mut material.rho_s, &self.rho_s);
@@ -51,6 +54,18 @@ impl Change {
         if self.normal.is_some() {
             material.normal = self.normal.clone();
         }
+    }
+}
+
+/// Whether a medium shows its own colour: skin kernels are normalised to white and need an albedo, measured media are
+/// not.
+fn has_its_own_colour(scattering: &Scattering) -> bool {
+    match scattering {
+        Scattering::Medium(_) => true,
+        Scattering::Preset(name) => {
+            cutis_optics::presets::find(name).is_ok_and(|preset| preset.media().is_some())
+        }
+        Scattering::Kernel(_) => false,
     }
 }
 

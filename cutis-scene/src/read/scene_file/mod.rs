@@ -8,8 +8,9 @@ mod material;
 
 use super::file::{Folder, read_bytes};
 use super::textures::Textures;
-use super::{CameraChoice, Parts, ReadOptions, read_mesh_file};
+use super::{CameraChoice, Parts, Piece, ReadOptions, read_mesh_file};
 use crate::SceneError;
+use crate::head::{HeadDetail, built_in};
 use keys::{Keys, Source};
 use std::path::{Path, PathBuf};
 use toml::de::DeTable;
@@ -18,9 +19,6 @@ pub(super) use camera::CameraKeys;
 
 /// Largest scene file, bytes: honest ones have one thousand.
 const MAX_BYTES: usize = 1 << 20;
-
-/// Triangles that are asked of the built-in head.
-const HEAD_TRIANGLES: usize = 60_000;
 
 /// What the files of a scene are read with.
 struct Context<'a> {
@@ -34,8 +32,8 @@ struct Context<'a> {
 enum MeshSource {
     /// A file, and the options it is read with.
     File(PathBuf, ReadOptions),
-    /// The head made by code, with about so many triangles.
-    BuiltInHead(usize),
+    /// The head made by code.
+    BuiltInHead,
 }
 
 /// Reads a scene file and the mesh it names.
@@ -68,7 +66,7 @@ fn to_parts(root: &Keys, mut context: Context) -> Result<Parts, SceneError> {
     let camera = root.table("camera")?.map(|keys| camera::read(&keys)).transpose()?;
     let mesh_source = mesh_source(&mesh, &context)?;
     let lights = light::read_all(root, &mut context)?;
-    let mut parts = load(&mesh, mesh_source)?;
+    let mut parts = load(mesh_source)?;
     if let Some(keys) = root.table("material")? {
         let change = material::read(&keys, &mut context)?;
         parts.pieces.iter_mut().for_each(|piece| change.apply(&mut piece.material));
@@ -78,6 +76,7 @@ fn to_parts(root: &Keys, mut context: Context) -> Result<Parts, SceneError> {
         parts.environment = lights.environment;
     }
     if let Some(camera) = camera {
+        parts.background = camera.background();
         parts.camera = CameraChoice::Partial(camera);
     }
     parts.warnings.append(&mut context.warnings);
@@ -92,7 +91,7 @@ fn mesh_source(keys: &Keys, context: &Context) -> Result<MeshSource, SceneError>
     match (keys.string("path")?, keys.string("builtin")?) {
         (Some(_), Some(_)) => Err(keys.error("builtin", "stands beside `path`; only one can be the mesh")),
         (None, None) => Err(keys.error("path", "is missing: [mesh] needs `path` or `builtin`")),
-        (None, Some("head")) => Ok(MeshSource::BuiltInHead(HEAD_TRIANGLES)),
+        (None, Some("head")) => Ok(MeshSource::BuiltInHead),
         (None, Some(other)) => Err(keys.error("builtin", format!("`{other}` is not known; `head` is"))),
         (Some(text), None) => {
             let path = context.folder.resolve(text).map_err(|reason| keys.error("path", reason))?;
@@ -107,15 +106,21 @@ fn mesh_source(keys: &Keys, context: &Context) -> Result<MeshSource, SceneError>
 }
 
 /// The objects of the mesh, with whatever else its file has.
-fn load(keys: &Keys, source: MeshSource) -> Result<Parts, SceneError> {
+fn load(source: MeshSource) -> Result<Parts, SceneError> {
     match source {
         MeshSource::File(path, options) => read_mesh_file(&path, &options),
-        MeshSource::BuiltInHead(triangles) => built_in_head(keys, triangles),
+        MeshSource::BuiltInHead => Ok(built_in_head()),
     }
 }
 
-/// The seam for the built-in head: return the pieces of `crate::head::built_in(triangles)` from here.
-fn built_in_head(keys: &Keys, triangles: usize) -> Result<Parts, SceneError> {
-    let reason = format!("a head of {triangles} triangles is not made by this version yet; use `path`");
-    Err(keys.error("builtin", reason))
+/// The built-in head as the mesh of a scene.
+fn built_in_head() -> Parts {
+    let head = built_in(HeadDetail::default());
+    let piece = Piece {
+        name: head.name,
+        place: "built-in head".to_owned(),
+        mesh: head.mesh,
+        material: head.material,
+    };
+    Parts { pieces: vec![piece], ..Parts::default() }
 }

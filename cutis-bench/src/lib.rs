@@ -1,1 +1,7 @@
-//! Benches of cutis live in `benches/`; this library is empty on purpose.
+//! Benches of cutis live in `benches/`, one group per stage; this library is empty on purpose.
+//!
+//! - `cargo bench -p cutis-bench --bench optics`: fits of Gaussians to the dipole.
+//! - `cargo bench -p cutis-bench --bench diffusion`: the blur against plain copies of its texture.
+//! - `cargo bench -p cutis-bench --bench frame`: whole pictures of heads.
+//!
+//! The last two also print reports of their own on stderr; `-- table` after the command prints them alone.

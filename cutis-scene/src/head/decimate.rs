@@ -24,6 +24,9 @@ pub fn decimate(
     thinning.finish()
 }
 
+/// Relative length of an edge as ordered bits, its ends, and how often they had moved.
+type Entry = (u32, [u32; 2], [u32; 2]);
+
 struct Thinning<'a, F> {
     surface: Surface,
     dead: Vec<bool>,
@@ -33,7 +36,7 @@ struct Thinning<'a, F> {
     wanted_mm: Vec<f32>,
     /// Counts the moves of a point: older queue entries of its edges are void.
     moves: Vec<u32>,
-    queue: BinaryHeap<Reverse<(u32, [u32; 2], [u32; 2])>>,
+    queue: BinaryHeap<Reverse<Entry>>,
     edge_length_mm: &'a F,
 }
 
@@ -62,7 +65,7 @@ impl<'a, F: Fn(Vec3) -> f32 + Sync> Thinning<'a, F> {
     }
 
     /// Queue entry of an edge: its relative length as ordered bits, its ends, and their moves so far.
-    fn entry(&self, [a, b]: [u32; 2]) -> (u32, [u32; 2], [u32; 2]) {
+    fn entry(&self, [a, b]: [u32; 2]) -> Entry {
         let (i, j) = (a as usize, b as usize);
         let length = (self.surface.points_mm[i] - self.surface.points_mm[j]).length();
         let ratio = length / (self.wanted_mm[i] + self.wanted_mm[j]);

@@ -49,7 +49,7 @@ pub fn smoothstep(from: f32, to: f32, x: f32) -> f32 {
 
 /// |x| rounded off over `radius_mm`, so that mirrored halves meet without a crease.
 pub fn soft_abs(x: f32, radius_mm: f32) -> f32 {
-    (x * x + radius_mm * radius_mm).sqrt()
+    x.hypot(radius_mm)
 }
 
 /// Rotation about the x axis that lifts +z towards +y by `degrees`.

@@ -8,6 +8,7 @@ use crate::passes::atlas::{ChartMap, NO_CHART};
 use crate::passes::tap::{TAPS, Taps};
 use glam::{Vec2, Vec4};
 use rayon::prelude::*;
+use std::ops::{Add, Mul};
 
 /// What is blurred: any number of four-channel layers, and the stretch that rules the width.
 #[derive(Debug, Clone)]
@@ -107,26 +108,101 @@ fn blur_along<const V: bool>(charts: &ChartMap, widening: Widening, source: &Fie
         |(y, (mut layers, stretch))| {
             for x in 0..size {
                 let texel = y * size + x;
-                let reads = Reads::at::<V>(taps, charts, widening, &source.stretch_mm, texel);
-                for (target, source) in layers.iter_mut().zip(&source.layers) {
-                    target[x] = reads.gather(source);
+                match Reads::at::<V>(taps, charts, widening, &source.stretch_mm, texel) {
+                    Reads::Own => {
+                        layers.iter_mut().zip(&source.layers).for_each(|(to, from)| to[x] = from[texel]);
+                        stretch[x] = source.stretch_mm[texel];
+                    }
+                    Reads::Cells(cells) => {
+                        layers
+                            .iter_mut()
+                            .zip(&source.layers)
+                            .for_each(|(to, from)| to[x] = cells.gather(from, texel));
+                        stretch[x] = cells.gather(&source.stretch_mm, texel);
+                    }
+                    Reads::Linear(reads) => {
+                        layers
+                            .iter_mut()
+                            .zip(&source.layers)
+                            .for_each(|(to, from)| to[x] = reads.gather(from, texel));
+                        stretch[x] = reads.gather_nearest(&source.stretch_mm, texel);
+                    }
+                    Reads::Cubic(reads) => {
+                        layers
+                            .iter_mut()
+                            .zip(&source.layers)
+                            .for_each(|(to, from)| to[x] = reads.gather(from, texel));
+                        stretch[x] = reads.gather_nearest(&source.stretch_mm, texel);
+                    }
                 }
-                stretch[x] = reads.gather_roughly(taps, &source.stretch_mm, texel);
             }
         },
     );
 }
 
-/// Reads of one texel at most: itself, and six taps between four texels each.
-const MAX_READS: usize = 25;
+/// What one texel reads.
+enum Reads {
+    /// Only itself.
+    Own,
+    /// Itself and three neighbours on either side.
+    Cells(Cells),
+    /// Six taps between two texels each, and itself.
+    Linear(Spaced<2>),
+    /// Six taps among four texels each, and itself.
+    Cubic(Spaced<4>),
+}
 
-/// The texels one texel reads, and their weights.
-struct Reads {
-    count: usize,
-    texels: [u32; MAX_READS],
-    weights: [f32; MAX_READS],
-    /// The texels nearest to the six taps, for what needs no interpolation.
-    nearest: [u32; 6],
+/// Itself and three neighbours on either side.
+struct Cells {
+    weights: [f32; 4],
+    stride: usize,
+}
+
+/// Six taps, three on either side, each interpolated among `N` neighbouring texels.
+struct Spaced<const N: usize> {
+    centre_weight: f32,
+    /// First of the texels of each tap; the others follow `stride` elements apart.
+    first: [usize; 6],
+    weights: [[f32; N]; 6],
+    stride: usize,
+}
+
+impl Cells {
+    #[inline(always)]
+    fn gather<T>(&self, map: &[T], texel: usize) -> T
+    where
+        T: Copy + Add<Output = T> + Mul<f32, Output = T>,
+    {
+        let pair = |k: usize| (map[texel + k * self.stride] + map[texel - k * self.stride]) * self.weights[k];
+        map[texel] * self.weights[0] + pair(1) + pair(2) + pair(3)
+    }
+}
+
+impl<const N: usize> Spaced<N> {
+    #[inline(always)]
+    fn gather(&self, map: &[Vec4], texel: usize) -> Vec4 {
+        // One sum for each place within a tap: the processor adds them side by side.
+        let mut sums = [Vec4::ZERO; N];
+        for (&first, weights) in self.first.iter().zip(&self.weights) {
+            for j in 0..N {
+                sums[j] += map[first + j * self.stride] * weights[j];
+            }
+        }
+        sums.iter().fold(map[texel] * self.centre_weight, |sum, &part| sum + part)
+    }
+
+    /// The same without interpolation: enough for the stretch, which is smooth or constant over whole triangles.
+    #[inline(always)]
+    fn gather_nearest(&self, map: &[Vec2], texel: usize) -> Vec2 {
+        let mut sum = map[texel] * self.centre_weight;
+        for (&first, weights) in self.first.iter().zip(&self.weights) {
+            let middle = N / 2 - 1;
+            let nearest = middle + usize::from(weights[middle + 1] > weights[middle]);
+            let whole: f32 = weights.iter().sum();
+            sum += map[first + nearest * self.stride] * whole;
+        }
+        sum
+    }
 }
 
 /// The line of texels along which one texel is blurred.
@@ -154,22 +230,6 @@ impl<const V: bool> Line<'_, V> {
 
 impl Reads {
     #[inline(always)]
-    fn own(texel: usize) -> Self {
-        let mut reads =
-            Self { count: 1, texels: [0; MAX_READS], weights: [0.0; MAX_READS], nearest: [texel as u32; 6] };
-        reads.texels[0] = texel as u32;
-        reads.weights[0] = 1.0;
-        reads
-    }
-
-    #[inline(always)]
-    fn push(&mut self, texel: usize, weight: f32) {
-        self.texels[self.count] = texel as u32;
-        self.weights[self.count] = weight;
-        self.count += 1;
-    }
-
-    #[inline(always)]
     fn at<const V: bool>(
         taps: &Taps,
         charts: &ChartMap,
@@ -177,9 +237,8 @@ impl Reads {
         stretch_mm: &[Vec2],
         texel: usize,
     ) -> Self {
-        let mut reads = Self::own(texel);
         if charts.chart[texel] == NO_CHART {
-            return reads;
+            return Self::Own;
         }
         let (reach, stride) =
             if V { (charts.reach_v[texel], charts.size) } else { (charts.reach_u[texel], 1) };
@@ -187,108 +246,67 @@ impl Reads {
         // A place exactly at the end would make the next texel, outside, part of the read.
         let mut line = Line::<V> { stretch_mm, texel, stride, room: reach - 1e-3 };
         match widening.taps(taps, line.texel_mm(texel), reach) {
-            Spread::Cells(weights) => reads.add_cells(&line, weights),
-            Spread::Linear(spacing) => reads.add_spaced::<V, false>(taps, &line, spacing),
+            Spread::Cells(weights) => Self::Cells(Cells { weights, stride }),
+            Spread::Linear(spacing) => {
+                line.spaced(taps, spacing, |f| [1.0 - f, f]).map_or(Self::Own, Self::Linear)
+            }
             Spread::Cubic(spacing) => {
                 // A cubic read reaches one texel farther than a linear one.
                 line.room -= 1.0;
-                reads.add_spaced::<V, true>(taps, &line, spacing);
+                line.spaced(taps, spacing, catmull_rom).map_or(Self::Own, Self::Cubic)
             }
         }
-        reads
     }
+}
 
-    #[inline(always)]
-    fn add_cells<const V: bool>(&mut self, line: &Line<V>, weights: [f32; 4]) {
-        self.weights[0] = weights[0];
-        for k in 1..4 {
-            let pair = [line.at(k, true), line.at(k, false)];
-            self.push(pair[0], weights[k]);
-            self.push(pair[1], weights[k]);
-            self.nearest[2 * k - 2] = pair[0] as u32;
-            self.nearest[2 * k - 1] = pair[1] as u32;
-        }
-    }
-
+impl<const V: bool> Line<'_, V> {
     /// Three taps on either side, the same distance of surface apart: where the stretch varies, so does the distance in
     /// texels. Each step takes the stretch half a step ahead.
     #[inline(always)]
-    fn add_spaced<const V: bool, const CUBIC: bool>(&mut self, taps: &Taps, line: &Line<V>, spacing: f32) {
-        if spacing <= 0.0 || line.room <= 0.0 {
-            return;
+    fn spaced<const N: usize>(
+        &self,
+        taps: &Taps,
+        spacing: f32,
+        interpolate: impl Fn(f32) -> [f32; N],
+    ) -> Option<Spaced<N>> {
+        if spacing <= 0.0 || self.room <= 0.0 {
+            return None;
         }
-        self.weights[0] = taps.weights[0];
-        let spacing_mm = spacing * line.texel_mm(line.texel);
-        for (side, forward) in [true, false].into_iter().enumerate() {
-            let mut place = 0.0f32;
-            let mut step = spacing;
-            for k in 0..3 {
-                let ahead = (place + 0.5 * step).min(line.room) as usize;
-                step = spacing_mm / line.texel_mm(line.at(ahead, forward));
-                place = (place + step).min(line.room);
+        let mut spaced = Spaced {
+            centre_weight: taps.weights[0],
+            first: [0; 6],
+            weights: [[0.0; N]; 6],
+            stride: self.stride,
+        };
+        let spacing_mm = spacing * self.texel_mm(self.texel);
+        let (mut up, mut down) = ([0.0f32, spacing], [0.0f32, spacing]);
+        // Texels that a tap needs before the one it follows: none for linear reads, one for cubic ones.
+        let before = N / 2 - 1;
+        for k in 0..3 {
+            self.advance(&mut up, spacing_mm, true);
+            self.advance(&mut down, spacing_mm, false);
+            for (side, place) in [up[0], down[0]].into_iter().enumerate() {
                 let whole = place as usize;
-                let f = place - whole as f32;
-                self.add_tap::<V, CUBIC>(line, whole, f, forward, taps.weights[k + 1]);
-                self.nearest[2 * k + side] = line.at(whole + usize::from(f > 0.5), forward) as u32;
+                let mut weights = interpolate(place - whole as f32).map(|w| w * taps.weights[k + 1]);
+                spaced.first[2 * k + side] = if side == 0 {
+                    self.texel + whole * self.stride - before * self.stride
+                } else {
+                    // Seen from the other side: the last texel of the tap comes first.
+                    weights.reverse();
+                    self.texel - (whole + N - 1 - before) * self.stride
+                };
+                spaced.weights[2 * k + side] = weights;
             }
         }
+        Some(spaced)
     }
 
+    /// Moves a place (and the last step to it) by one spacing.
     #[inline(always)]
-    fn add_tap<const V: bool, const CUBIC: bool>(
-        &mut self,
-        line: &Line<V>,
-        whole: usize,
-        f: f32,
-        forward: bool,
-        weight: f32,
-    ) {
-        let near = line.at(whole, forward);
-        let far = line.at(whole + 1, forward);
-        if CUBIC {
-            let [w0, w1, w2, w3] = catmull_rom(f);
-            // Before the first texel on this side lies the first on the other.
-            let before = if whole > 0 { line.at(whole - 1, forward) } else { line.at(1, !forward) };
-            self.push(before, weight * w0);
-            self.push(near, weight * w1);
-            self.push(far, weight * w2);
-            self.push(line.at(whole + 2, forward), weight * w3);
-        } else {
-            self.push(near, weight * (1.0 - f));
-            self.push(far, weight * f);
-        }
-    }
-
-    #[inline(always)]
-    fn gather(&self, map: &[Vec4]) -> Vec4 {
-        // The number of reads is 1 plus a multiple of 6: six sums at a time keep the processor's adders busy.
-        let mut sums = [Vec4::ZERO; 6];
-        let reads =
-            self.texels[1..self.count].chunks_exact(6).zip(self.weights[1..self.count].chunks_exact(6));
-        for (texels, weights) in reads {
-            for k in 0..6 {
-                sums[k] += map[texels[k] as usize] * weights[k];
-            }
-        }
-        map[self.texels[0] as usize] * self.weights[0]
-            + (sums[0] + sums[1])
-            + (sums[2] + sums[3])
-            + (sums[4] + sums[5])
-    }
-
-    /// The same without interpolation: enough for the stretch, which is smooth or constant over whole triangles.
-    #[inline(always)]
-    fn gather_roughly(&self, taps: &Taps, map: &[Vec2], texel: usize) -> Vec2 {
-        if self.count == 1 {
-            return map[texel];
-        }
-        let centre = self.weights[0];
-        let outer =
-            if self.count == 7 { [self.weights[1], self.weights[3], self.weights[5]] } else { taps.outer() };
-        let pairs = self.nearest.chunks_exact(2).zip(outer);
-        pairs.fold(map[texel] * centre, |sum, (pair, w)| {
-            sum + (map[pair[0] as usize] + map[pair[1] as usize]) * w
-        })
+    fn advance(&self, [place, step]: &mut [f32; 2], spacing_mm: f32, forward: bool) {
+        let ahead = (*place + 0.5 * *step).min(self.room) as usize;
+        *step = spacing_mm / self.texel_mm(self.at(ahead, forward));
+        *place = (*place + *step).min(self.room);
     }
 }
 

@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let only = arguments.next();
     std::fs::create_dir_all(&folder)?;
     let start = std::time::Instant::now();
-    let head = built_in(HeadDetail { triangles, ..HeadDetail::default() });
+    let head = built_in(HeadDetail { triangles, map_size: if clay { 0 } else { 2048 } });
     eprintln!(
         "{} triangles, {} vertices, {} charts, closed {}, {:.2} s",
         head.mesh.triangles.len(),

@@ -12,7 +12,7 @@ pub fn edge_length_mm(sculpture: &Sculpture, p: Vec3) -> f32 {
     let coarse = 6.0 - 2.7 * on_face;
     let towards =
         |middle: Vec3, radii: Vec3, fine: f32| coarse + (fine - coarse) * bell(side - middle, radii).sqrt();
-    let eye = towards(EYE_MM + Vec3::Z * 12.0, Vec3::new(17.0, 12.0, 14.0), 1.0);
+    let eye = towards(EYE_MM + Vec3::Z * 12.0, Vec3::new(17.0, 12.0, 14.0), 0.85);
     let nose = towards(Vec3::new(5.0, -40.0, 98.0), Vec3::new(16.0, 14.0, 16.0), 1.5);
     let mouth = towards(Vec3::new(10.0, -70.0, 90.0), Vec3::new(22.0, 9.0, 20.0), 1.15);
     let ear = if sculpture.ear.near(side) {

@@ -44,11 +44,23 @@ impl EarPlate {
     pub fn new() -> Self {
         let drawing = Drawing::new();
         let [nu, nv] = TABLE_SIZE;
-        let table = (0..nu * nv)
-            .into_par_iter()
-            .map(|i| drawing.sample(TABLE_ORIGIN_MM + Vec2::new((i % nu) as f32, (i / nu) as f32) * CELL_MM))
-            .collect();
-        Self { table }
+        let place = |i: usize| TABLE_ORIGIN_MM + Vec2::new((i % nu) as f32, (i / nu) as f32) * CELL_MM;
+        let heights: Vec<f32> = (0..nu * nv).into_par_iter().map(|i| drawing.height_mm(place(i))).collect();
+        // Ridges and hollows are drawn with distances to curves, which have creases of their own.
+        let heights = blurred(&blurred(&heights, 1), nu);
+        let entry = |i: usize| {
+            let at = |step: isize| heights[i.saturating_add_signed(step).min(nu * nv - 1)];
+            let slope = Vec2::new(at(1) - at(-1), at(nu as isize) - at(-(nu as isize))) / (2.0 * CELL_MM);
+            let cosine = (1.0 + slope.length_squared()).sqrt().recip();
+            let q = place(i);
+            Vec4::new(
+                heights[i],
+                cosine,
+                drawing.outline.signed_distance(q),
+                drawing.concha.signed_distance(q),
+            )
+        };
+        Self { table: (0..nu * nv).into_par_iter().map(entry).collect() }
     }
 
     /// Reads the table with quadratic B-splines, which keep slopes continuous.
@@ -66,6 +78,18 @@ impl EarPlate {
         let sum = row(0) + row(1) + row(2);
         PlatePoint { height_mm: sum.x, cosine: sum.y, outside_mm: sum.z, outside_concha_mm: sum.w }
     }
+}
+
+/// Mean over `2 BLUR + 1` neighbours that are `step` entries apart.
+fn blurred(values: &[f32], step: usize) -> Vec<f32> {
+    /// Reaches 0.6 mm to either side.
+    const BLUR: usize = 2;
+    let last = values.len() - 1;
+    let mean = |i: usize| {
+        let around = (0..=2 * BLUR).map(|k| values[(i + k * step).saturating_sub(BLUR * step).min(last)]);
+        around.sum::<f32>() / (2 * BLUR + 1) as f32
+    };
+    (0..values.len()).map(mean).collect()
 }
 
 /// Weights of the three nearest samples; `t` is the offset from the middle one, within ±0.5.
@@ -140,15 +164,5 @@ impl Drawing {
         let ridges = (antihelix.powi(4) + (0.8 * crus).powi(4)).sqrt().sqrt();
         let root = ridge(self.root.distance(q), 2.6) * smoothstep(15.0, 6.0, q.x);
         dish * 1.5 - concha * (CONCHA_DEPTH_MM - 7.0 * root) + 3.6 * ridges - fossa - 2.0 * lobe
-    }
-
-    fn sample(&self, q: Vec2) -> Vec4 {
-        let h = self.height_mm(q);
-        let slope = Vec2::new(
-            self.height_mm(q + Vec2::X * CELL_MM) - self.height_mm(q - Vec2::X * CELL_MM),
-            self.height_mm(q + Vec2::Y * CELL_MM) - self.height_mm(q - Vec2::Y * CELL_MM),
-        ) / (2.0 * CELL_MM);
-        let cosine = (1.0 + slope.length_squared()).sqrt().recip();
-        Vec4::new(h, cosine, self.outline.signed_distance(q), self.concha.signed_distance(q))
     }
 }

@@ -26,8 +26,8 @@ impl Eyes {
                 [12.0, 16.5, 79.0, 8.0],
                 [30.0, 19.5, 74.0, 7.5],
                 [45.0, 15.0, 62.0, 7.0],
-                [53.0, 4.0, 49.0, 7.0],
-                [53.5, -12.0, 46.0, 7.0],
+                [51.5, 4.0, 48.5, 7.0],
+                [52.0, -11.0, 44.0, 6.5],
             ]),
             crease: Curve2::open(&[[-13.0, 5.5], [-8.0, 8.6], [0.0, 10.2], [9.0, 9.0], [18.5, 3.5]]),
             lash_line: Curve2::open(&LASH_LINE_MM),
@@ -47,7 +47,7 @@ impl Eyes {
         let on_front = smoothstep(-4.0, 2.0, q.z);
         let frontal = Vec2::new(q.x, q.y);
         d + on_front
-            * (0.5 * groove(self.crease.distance(frontal), 1.7)
+            * (0.75 * groove(self.crease.distance(frontal), 1.5)
                 + 0.6 * groove(self.lash_line.distance(frontal), 0.9))
     }
 }

@@ -20,15 +20,15 @@ impl Mouth {
     pub fn new() -> Self {
         Self {
             upper_lip: Sweep::new(&[
-                [0.0, -66.2, 91.5, 4.2],
-                [5.0, -65.2, 91.2, 4.4],
-                [14.0, -67.3, 86.8, 3.6],
+                [0.0, -66.3, 90.0, 4.0],
+                [5.0, -65.3, 89.8, 4.2],
+                [14.0, -67.4, 86.0, 3.5],
                 [23.5, -70.3, 78.8, 2.2],
             ]),
             lower_lip: Sweep::new(&[
-                [0.0, -75.6, 89.0, 5.5],
-                [8.0, -75.3, 87.8, 5.3],
-                [16.0, -73.6, 84.2, 4.0],
+                [0.0, -75.1, 87.4, 5.3],
+                [8.0, -74.8, 86.4, 5.1],
+                [16.0, -73.5, 83.4, 3.9],
                 [23.5, -71.2, 78.8, 2.2],
             ]),
             line: Curve2::open(&MOUTH_LINE_MM),
@@ -41,7 +41,7 @@ impl Mouth {
         if p.y > -30.0 || p.y < -110.0 || side.x > 55.0 {
             return d;
         }
-        let lips = soft_union(self.upper_lip.distance(side, 15.0), self.lower_lip.distance(side, 15.0), 1.5);
+        let lips = soft_union(self.upper_lip.distance(side, 15.0), self.lower_lip.distance(side, 15.0), 2.6);
         let d = soft_union(d, lips, 3.6);
         let frontal = Vec2::new(side.x, p.y);
         let on_front = smoothstep(60.0, 72.0, p.z);

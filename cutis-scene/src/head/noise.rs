@@ -14,11 +14,17 @@ fn hash(cell: IVec3, seed: u32) -> u32 {
     h ^ (h >> 16)
 }
 
+/// Largest whole numbers not above; by casts, since the library's `floor` is a call on plain x86-64.
+fn floor(p: Vec3) -> IVec3 {
+    let cut = p.as_ivec3();
+    let step = |cut: i32, p: f32| i32::from(cut as f32 > p);
+    cut - IVec3::new(step(cut.x, p.x), step(cut.y, p.y), step(cut.z, p.z))
+}
+
 /// Smooth noise, about -1 to 1 with mean 0; features as large as the unit of `p`.
 pub fn lattice(p: Vec3, seed: u32) -> f32 {
-    let floor = p.floor();
-    let cell = floor.as_ivec3();
-    let t = p - floor;
+    let cell = floor(p);
+    let t = p - cell.as_vec3();
     let w = t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
     let value = |x, y, z| hash(cell + IVec3::new(x, y, z), seed) as f32 * (2.0 / u32::MAX as f32) - 1.0;
     let row = |y, z| value(0, y, z) + (value(1, y, z) - value(0, y, z)) * w.x;
@@ -44,7 +50,7 @@ pub struct Cells {
 /// Cellular noise (Worley 1996) over the eight cells around the nearest lattice corner: a strewn point is off its
 /// cell's middle by up to 0.3, so the nearest is always found and the second nearest nearly so.
 pub fn cells(p: Vec3, seed: u32) -> Cells {
-    let corner = p.round().as_ivec3() - IVec3::ONE;
+    let corner = floor(p - 0.5);
     let mut found = Cells { nearest: f32::MAX, second: f32::MAX, id: 0.0 };
     for i in 0..8 {
         let cell = corner + IVec3::new(i & 1, i >> 1 & 1, i >> 2);

@@ -25,8 +25,11 @@ pub fn height_mm(p: Vec3, areas: &Areas) -> f32 {
     let pit = (-(pores.nearest / 0.3).powi(2)).exp() * (pores.id * 1.6 - 0.6).max(0.0);
     let coarse = cells(bent / (2.3 * PORE_SPACING_MM), 5);
     let wide_furrow = (-((coarse.second - coarse.nearest) / 0.13).powi(2)).exp();
-    let skin = -0.018 * furrow - (0.012 + 0.055 * areas.porous) * pit - 0.020 * wide_furrow
-        + 0.03 * lattice(p / 3.1, 6);
+    let skin = -0.026 * furrow - (0.02 + 0.08 * areas.porous) * pit - 0.030 * wide_furrow
+        + 0.04 * lattice(p / 3.1, 6);
+    if areas.lips == 0.0 {
+        return skin;
+    }
     skin * (1.0 - 0.8 * areas.lips) - areas.lips * lip_creases_mm(p)
 }
 

@@ -92,8 +92,10 @@ fn colour(p: Vec3, areas: &Areas) -> Vec3 {
     // Veins and thin skin under the eyes: less red, hardly less blue.
     let of_eye = Vec3::new(0.12, 0.13, 0.04) * areas.eye;
     let mut c = SKIN * (-(of_blood + of_melanin + of_eye)).exp();
-    let lip = LIPS * (1.0 + 0.12 * lattice(Vec3::new(p.x / 1.3, p.y / 6.0, p.z / 2.5), 7));
-    c = c.lerp(lip, 0.9 * areas.lips);
+    if areas.lips > 0.0 {
+        let lip = LIPS * (1.0 + 0.12 * lattice(Vec3::new(p.x / 1.3, p.y / 6.0, p.z / 2.5), 7));
+        c = c.lerp(lip, 0.9 * areas.lips);
+    }
     c *= 1.0 - 0.3 * areas.mouth_line;
     c.lerp(HAIR, 0.75 * hair(p, areas))
 }
@@ -102,7 +104,10 @@ fn colour(p: Vec3, areas: &Areas) -> Vec3 {
 fn freckle(p: Vec3) -> f32 {
     let spot = cells(p / 7.5, 40);
     let radius = 0.17 * (spot.id * 3.0 - 2.0).max(0.0);
-    smoothstep(radius, 0.4 * radius, spot.nearest + 0.04 * lattice(p / 0.9, 41)) * f32::from(radius > 0.02)
+    if radius < 0.02 {
+        return 0.0; // less than a texel
+    }
+    smoothstep(radius, 0.4 * radius, spot.nearest + 0.04 * lattice(p / 0.9, 41))
 }
 
 /// Share of the texel that is covered by hair of brow or lashes.

@@ -38,7 +38,7 @@ impl Skull {
         let chewing_muscle = ellipsoid(side - Vec3::new(44.0, -36.0, 2.0), Vec3::new(20.0, 42.0, 26.0));
         d = soft_union(d, chewing_muscle, 16.0);
         d = soft_union(d, self.cheekbone.distance(side, 32.0), 24.0);
-        d = soft_union(d, ellipsoid(p - Vec3::new(0.0, -101.0, 77.0), Vec3::new(15.0, 13.0, 13.0)), 12.0);
+        d = soft_union(d, ellipsoid(p - Vec3::new(0.0, -101.0, 78.0), Vec3::new(15.0, 13.0, 13.0)), 12.0);
         d + clay(side)
     }
 }
@@ -53,7 +53,7 @@ fn cranium(p: Vec3) -> f32 {
 /// The wedge from brow to chin that carries the features, and the arch of the teeth.
 fn face_block(p: Vec3) -> f32 {
     let middle = ellipsoid(p - Vec3::new(0.0, -34.0, 26.0), Vec3::new(59.0, 76.0, 57.0));
-    let teeth = ellipsoid(p - Vec3::new(0.0, -66.0, 56.0), Vec3::new(33.0, 30.0, 34.0));
+    let teeth = ellipsoid(p - Vec3::new(0.0, -63.0, 57.0), Vec3::new(33.0, 31.0, 33.5));
     soft_union(middle, teeth, 14.0)
 }
 
@@ -66,5 +66,5 @@ fn clay(side: Vec3) -> f32 {
     3.0 * at(66.0, 16.0, 46.0, 22.0, 24.0, 22.0) + 2.5 * at(56.0, -54.0, 38.0, 20.0, 22.0, 26.0)
         - 4.0 * at(0.0, 76.0, 66.0, 60.0, 36.0, 40.0)
         - 1.5 * at(30.0, -56.0, 72.0, 14.0, 18.0, 20.0)
-        + 4.0 * at(0.0, -88.0, 90.0, 26.0, 6.0, 12.0)
+        + 3.0 * at(0.0, -88.0, 90.0, 26.0, 6.0, 12.0)
 }

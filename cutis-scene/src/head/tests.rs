@@ -66,7 +66,7 @@ fn the_rim_of_the_ear_is_thin_enough_to_glow() {
     // Through the rim from the side, and through the plate just inside it, down the back of the ear.
     for (u, v) in [(24.0, 27.8), (30.3, 20.0), (32.7, 9.0), (31.3, -3.5), (27.0, -14.0), (27.5, 12.0)] {
         let t = thickness_mm(&bvh, at(u, v, 15.0), at(u, v, 14.0) - at(u, v, 15.0));
-        assert!((2.0..4.3).contains(&t), "{t} mm at {u}, {v}");
+        assert!((2.0..4.0).contains(&t), "{t} mm at {u}, {v}");
     }
     // Behind the ear there is air before the skull.
     let behind = at(30.0, 5.0, -3.0);

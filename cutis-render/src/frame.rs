@@ -1,5 +1,6 @@
 //! What a renderer gives back.
 
+use crate::passes::seams::DiffusionReport;
 use glam::Vec4;
 use std::time::Duration;
 
@@ -16,6 +17,8 @@ pub struct Frame {
     pub layers: Vec<Layer>,
     /// What was done and how long it took, in order.
     pub passes: Vec<PassTime>,
+    /// Energy and seam error of every object's diffusion, where they were asked for.
+    pub diffusion_reports: Vec<DiffusionReport>,
     /// Things the person who runs the program should know, in words.
     pub warnings: Vec<String>,
 }

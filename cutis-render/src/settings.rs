@@ -21,10 +21,12 @@ pub struct Settings {
     pub irradiance_size: u32,
     /// Gaussians in the kernel of a material that is given by its coefficients.
     pub gaussians: usize,
-    /// Shadow rays per texel and per picture sample towards a light with an extent.
+    /// Shadow rays per texel towards a light with an extent.
     pub shadow_samples: u32,
     /// Ambient-occlusion rays per texel of the (smaller) occlusion map.
     pub ambient_samples: u32,
+    /// Whether to measure what the diffusion did to energy and seams.
+    pub diffusion_report: bool,
     /// Seed of every random choice: the same seed and scene give the same bits.
     pub seed: u64,
     /// Layers wanted beside the picture.
@@ -45,6 +47,7 @@ impl Default for Settings {
             gaussians: 6,
             shadow_samples: 4,
             ambient_samples: 24,
+            diffusion_report: false,
             seed: 1,
             aovs: Vec::new(),
             aov_space: AovSpace::Picture,

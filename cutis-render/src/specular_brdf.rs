@@ -6,7 +6,7 @@
 //! Symbols: m root-mean-square slope of the microfacets; F0 reflectance at normal incidence; H half vector.
 //! Not modelled: shadowing and masking beyond the 1/|L + V|² form, inter-reflection between facets.
 //! Sources: Kelemen & Szirmay-Kalos 2001 (Eurographics short papers, eq. not checked); d'Eon, Luebke & Enderton 2007,
-//! section 5.4; the missing 1/pi is noted in the project's theory page.
+//! section 5.4.
 
 use std::f32::consts::PI;
 

@@ -89,13 +89,16 @@ pub struct RenderArgs {
     /// Shadow rays per texel towards lights with an extent [1 to 1024]
     #[arg(long, value_name = "N", default_value_t = Settings::default().shadow_samples)]
     pub shadow_samples: u32,
+    /// Measure what the diffusion did: change of energy, mismatch across UV seams
+    #[arg(long)]
+    pub diffusion_report: bool,
     /// Ambient-occlusion rays per texel of the occlusion map [1 to 4096]
     #[arg(long, value_name = "N", default_value_t = Settings::default().ambient_samples)]
     pub ambient_samples: u32,
     /// Light of the picture, on top of the scene camera's own exposure; not for EXR [EV (stops), -32 to 32, default 0]
     #[arg(long, value_name = "EV", allow_negative_numbers = true)]
     pub exposure_ev: Option<f32>,
-    /// Curve from scene light to screen light; not for EXR [default: agx]
+    /// Curve from scene light to screen light; not for EXR [default: neutral]
     #[arg(long, value_name = "NAME", value_parser = names(ToneMapper::ALL))]
     pub tone_mapper: Option<String>,
     /// Share of the light that glows around bright things; not for EXR [fraction, 0 to 1, default 0.04]

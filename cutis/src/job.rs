@@ -76,6 +76,7 @@ fn settings(args: &RenderArgs) -> Result<Settings> {
         irradiance_size: args.irradiance_size,
         gaussians: args.gaussians,
         shadow_samples: args.shadow_samples,
+        diffusion_report: args.diffusion_report,
         ambient_samples: args.ambient_samples,
         seed: args.seed,
         aovs,

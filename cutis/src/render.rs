@@ -6,6 +6,7 @@ use crate::progress::Bar;
 use crate::report::Report;
 use crate::{Outcome, talk};
 use cutis_render::film::{self, Film, Written};
+use cutis_render::passes::seams::DiffusionReport;
 use cutis_render::{Aov, CpuRenderer, Frame, PassTime, Renderer};
 use cutis_scene::Scene;
 use miette::{IntoDiagnostic, Result, miette};
@@ -29,14 +30,37 @@ pub fn run(args: &RenderArgs, verbose: u8) -> Result<Outcome> {
     let warnings = warnings(&job, &scene, &frame, &written);
     let passes = passes(reading, &frame, &written, writing);
     if job.json {
-        let report = Report::new(&job, &renderer, &written, &passes, &warnings, start.elapsed());
+        let report = Report::new(
+            &job,
+            &renderer,
+            &written,
+            &frame.diffusion_reports,
+            &passes,
+            &warnings,
+            start.elapsed(),
+        );
         talk::say(&serde_json::to_string_pretty(&report).into_diagnostic()?)?;
     } else {
         talk::say(&written.picture.display().to_string())?;
+        frame.diffusion_reports.iter().try_for_each(say_report)?;
     }
     warnings.iter().for_each(|warning| talk::tell(&format!("warning: {warning}")));
     tell_layers(&written);
     Ok(if written.broken_pixels == 0 { Outcome::Done } else { Outcome::CheckFailed })
+}
+
+/// One line on what the diffusion did to energy and seams.
+fn say_report(report: &DiffusionReport) -> Result<()> {
+    talk::say(&format!(
+        "{}: energy {:.0} -> {:.0} W/m² mm² ({:+.3} %), {} seam edges, mismatch mean {:.2} %, 99th percentile {:.2} %",
+        report.object,
+        report.energy_before_w_per_m2_mm2,
+        report.energy_after_w_per_m2_mm2,
+        100.0 * report.energy_change,
+        report.seam_edges,
+        100.0 * report.seam_error_mean,
+        100.0 * report.seam_error_p99,
+    ))
 }
 
 fn choose_threads(threads: Option<usize>) -> Result<()> {

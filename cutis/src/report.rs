@@ -3,6 +3,7 @@
 use crate::job::Job;
 use crate::machine::peak_memory_mib;
 use cutis_render::film::{LayerFile, Written};
+use cutis_render::passes::seams::DiffusionReport;
 use cutis_render::{PassTime, Renderer};
 use serde::Serialize;
 use std::time::Duration;
@@ -24,6 +25,7 @@ pub struct Report {
     output: String,
     format: String,
     layers: Vec<LayerReport>,
+    diffusion_reports: Vec<DiffusionReport>,
     warnings: Vec<String>,
     peak_memory_mib: Option<f64>,
 }
@@ -48,12 +50,14 @@ impl Report {
         job: &Job,
         renderer: &dyn Renderer,
         written: &Written,
+        diffusion_reports: &[DiffusionReport],
         passes: &[PassTime],
         warnings: &[String],
         wall_time: Duration,
     ) -> Self {
         let settings = &job.settings;
         Self {
+            diffusion_reports: diffusion_reports.to_vec(),
             version: env!("CARGO_PKG_VERSION"),
             technique: settings.technique.to_string(),
             diffusion: settings.diffusion.to_string(),

@@ -50,7 +50,7 @@ pub struct Film {
 
 impl Default for Film {
     fn default() -> Self {
-        Self { exposure_ev: 0.0, bloom: Some(Bloom::default()), tone_mapper: ToneMapper::AgX }
+        Self { exposure_ev: 0.0, bloom: Some(Bloom::default()), tone_mapper: ToneMapper::Neutral }
     }
 }
 

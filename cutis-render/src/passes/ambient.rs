@@ -71,6 +71,9 @@ fn representative(atlas: &Atlas, chart: u32, x: usize, y: usize) -> Option<usize
 
 fn openness(object: &Object, atlas: &Atlas, bvh: &Bvh, texel: usize, samples: u32, shift: Vec2) -> Vec4 {
     let Some(point) = atlas.surface_point(object, texel) else { return Vec4::ZERO };
+    if samples == 0 {
+        return Vec4::W; // nobody asked: open to all sides
+    }
     let origin = bvh.step_off(point.lifted_position_mm, point.flat_normal);
     let mut open = Vec4::ZERO;
     for i in 0..samples {

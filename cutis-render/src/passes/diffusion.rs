@@ -42,6 +42,7 @@ impl Diffused {
     /// Bilinear read of a layer at a level, within one chart. A chart too thin for a coarse level is read from the
     /// nearest finer one that has it; black if none does.
     pub fn sample(&self, level: usize, layer: usize, uv: Vec2, chart: u32) -> Vec4 {
+        let level = level.min(self.levels.len() - 1);
         let mut candidates = self.levels[..=level].iter().rev();
         candidates.find_map(|l| l.charts.sample(&l.layers[layer], uv, chart)).unwrap_or(Vec4::ZERO)
     }

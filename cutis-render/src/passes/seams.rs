@@ -10,8 +10,10 @@ use glam::{Vec2, Vec3};
 const PLACES: usize = 4;
 
 /// What the diffusion did to the light, as numbers.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct DiffusionReport {
+    /// Name of the object.
+    pub object: String,
     /// Total energy before, summed over red, green and blue of the kernel's total, W/m² times mm².
     pub energy_before_w_per_m2_mm2: f64,
     /// Total energy after.
@@ -33,6 +35,7 @@ pub fn diffusion_report(object: &Object, maps: &ObjectMaps) -> DiffusionReport {
     let after = energy(object, |uv, chart| diffused(&maps.diffused, &maps.kernel.weights, uv, chart));
     let [mean, p99] = seam_errors(object, maps);
     DiffusionReport {
+        object: object.name.clone(),
         energy_before_w_per_m2_mm2: before,
         energy_after_w_per_m2_mm2: after,
         energy_change: if before > 0.0 { after / before - 1.0 } else { 0.0 },

@@ -5,7 +5,7 @@ use crate::passes::ambient::Ambient;
 use crate::passes::atlas::Atlas;
 use crate::passes::blur::Fields;
 use crate::passes::diffusion::{DiffusionOperator, Separable};
-use crate::passes::irradiance::{IrradianceInputs, irradiance};
+use crate::passes::irradiance::{IrradianceInputs, distance_slot, irradiance};
 use crate::passes::resolve::{ObjectMaps, Resolve, Sample};
 use crate::passes::seams::{DiffusionReport, diffusion_report};
 use crate::passes::stretch::stretch_mm_per_texel;
@@ -14,7 +14,8 @@ use crate::prepare::{FilteredEnvironment, Kernel, RhoDt};
 use crate::sampling::random2;
 use crate::settings::{Aov, AovSpace, Diffusion, Settings};
 use crate::{Progress, RenderError};
-use cutis_scene::{Bvh, Object, Scene};
+use cutis_optics::{Dipole, Medium, presets};
+use cutis_scene::{Bvh, Material, Object, Scattering, Scene};
 use glam::{Vec2, Vec4};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -45,6 +46,9 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
     let mut frame = lit.resolve(settings, progress);
     if settings.aov_space == AovSpace::Texture {
         frame.layers = settings.aovs.iter().filter_map(|&aov| lit.texture_layer(aov)).collect();
+    }
+    if settings.diffusion_report {
+        frame.diffusion_reports = lit.reports();
     }
     frame.passes = lit.clock.passes;
     frame.warnings = warnings(scene);
@@ -78,15 +82,30 @@ impl<'a> LitScene<'a> {
         self.clock.time("resolve", || picture(&resolve, settings, progress))
     }
 
-    /// Energy and seam error of every object, by name.
-    pub fn reports(&self) -> Vec<(String, DiffusionReport)> {
-        let pairs = self.scene.objects.iter().zip(&self.maps);
-        pairs.map(|(object, maps)| (object.name.clone(), diffusion_report(object, maps))).collect()
+    /// Energy and seam error of every object.
+    pub fn reports(&self) -> Vec<DiffusionReport> {
+        self.scene
+            .objects
+            .iter()
+            .zip(&self.maps)
+            .map(|(object, maps)| diffusion_report(object, maps))
+            .collect()
     }
 
     /// Textures and tables of each object.
     pub fn maps(&self) -> &[ObjectMaps] {
         &self.maps
+    }
+
+    /// Distances through the body towards the first four lights, texel by texel, mm.
+    fn distances_mm(&self, maps: &ObjectMaps) -> Vec<Vec4> {
+        let layers = &maps.diffused.levels[0].layers;
+        let mut distances = vec![Vec4::ZERO; layers[0].len()];
+        for l in 0..self.scene.lights.len().min(4) {
+            let (layer, component) = distance_slot(l);
+            distances.iter_mut().zip(&layers[layer]).for_each(|(to, from)| to[l] = from[component]);
+        }
+        distances
     }
 
     /// A pass's own texture, of the first object. `None` for layers that exist only in the picture.
@@ -96,10 +115,7 @@ impl<'a> LitScene<'a> {
         let (size, pixels) = match aov {
             Aov::Irradiance => level(0)?,
             Aov::Blur(i) => level(usize::from(i) + 1)?,
-            Aov::Thickness => {
-                let (size, pixels) = level(0)?;
-                (size, pixels.iter().map(|p| Vec4::splat(p.w)).collect())
-            }
+            Aov::Thickness => (maps.atlas.size, self.distances_mm(maps)),
             Aov::Stretch => {
                 (maps.atlas.size, maps.stretch_mm.iter().map(|s| s.extend(0.0).extend(0.0)).collect())
             }
@@ -260,12 +276,25 @@ fn channels(aov: Aov) -> Vec<String> {
 }
 
 fn warnings(scene: &Scene) -> Vec<String> {
-    let open = scene.objects.iter().filter(|object| !object.closed);
-    open.map(|object| {
+    let open = scene.objects.iter().filter(|object| !object.closed).map(|object| {
         let name = &object.name;
         format!("'{name}' is not a closed surface: light that enters may find no way out, and thin parts stay dark")
-    })
-    .collect()
+    });
+    let media = scene.objects.iter().filter_map(|object| media_of(&object.material)).flatten();
+    let invalid = media.filter_map(|medium| {
+        let validity = Dipole::new(&medium).ok()?.validity();
+        (!validity.is_good()).then(|| validity.to_string())
+    });
+    open.chain(invalid).collect()
+}
+
+/// The media of a material that is given by its coefficients.
+fn media_of(material: &Material) -> Option<[Medium; 3]> {
+    match &material.scattering {
+        Scattering::Medium(media) => Some(*media),
+        Scattering::Preset(name) => presets::find(name).ok()?.media().copied(),
+        Scattering::Kernel(_) => None,
+    }
 }
 
 /// Adds up the time of each pass.

@@ -110,6 +110,7 @@ fn studio(triangles: usize) -> Scene {
     let head = built_in(HeadDetail { triangles, map_size: MAP_SIZE });
     let bounds_mm = head.mesh.bounds_mm().expect("the head is not empty");
     Scene {
+        background: None,
         objects: vec![head],
         lights: studio_lights(bounds_mm),
         environment: Some(studio_environment()),

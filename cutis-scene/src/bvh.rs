@@ -61,7 +61,7 @@ impl Bvh {
 
     /// The nearest surface along a ray, up to `max_mm`. `dir` is a unit vector.
     pub fn closest(&self, origin_mm: Vec3, dir: Vec3, max_mm: f32) -> Option<Hit> {
-        let ray = Ray::new(origin_mm.into(), dir.into(), 0.0, max_mm);
+        let ray = ray(origin_mm, dir, max_mm);
         let mut hit = RayHit::none();
         if !self.tree.ray_traverse(ray, &mut hit, |ray, id| self.triangles[id].intersect(ray)) {
             return None;
@@ -74,7 +74,7 @@ impl Bvh {
 
     /// Whether anything lies within `max_mm` along a ray.
     pub fn occluded(&self, origin_mm: Vec3, dir: Vec3, max_mm: f32) -> bool {
-        let ray = Ray::new(origin_mm.into(), dir.into(), 0.0, max_mm);
+        let ray = ray(origin_mm, dir, max_mm);
         !self.tree.ray_traverse_miss(ray, |ray, id| self.triangles[id].intersect(ray))
     }
 
@@ -82,6 +82,12 @@ impl Bvh {
     pub fn step_off(&self, position_mm: Vec3, normal: Vec3) -> Vec3 {
         position_mm + normal * self.offset_mm
     }
+}
+
+/// A ray as obvhs wants it: a direction of -0 is turned into 0, because the sign of its inverse and the octant it is
+/// sorted by would not agree, and rays along an axis would miss everything.
+fn ray(origin_mm: Vec3, dir: Vec3, max_mm: f32) -> Ray {
+    Ray::new(origin_mm.into(), (dir + Vec3::ZERO).into(), 0.0, max_mm)
 }
 
 /// Barycentric weights of the second and third corner for a point of the triangle's plane.
@@ -97,4 +103,49 @@ fn barycentric(triangle: &Triangle, point_mm: Vec3) -> (f32, f32) {
     let b1 = ((d22 * p1 - d12 * p2) / determinant).clamp(0.0, 1.0);
     let b2 = ((d11 * p2 - d12 * p1) / determinant).clamp(0.0, 1.0 - b1);
     (b1, b2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Material, Mesh};
+    use glam::Vec2;
+
+    /// A square of 2 mm in each of the three planes through the origin, 1 mm in front of it.
+    fn corner() -> Vec<Object> {
+        let mut mesh = Mesh::default();
+        for normal in [Vec3::X, Vec3::Y, Vec3::Z] {
+            let (a, b) = normal.any_orthonormal_pair();
+            let base = mesh.positions_mm.len() as u32;
+            mesh.positions_mm.extend([-a - b, a - b, a + b, b - a].map(|p| p * 2.0 + normal));
+            mesh.uvs.extend([Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y]);
+            mesh.triangles.extend([[base, base + 1, base + 2], [base, base + 2, base + 3]]);
+        }
+        vec![Object::new("corner", mesh, Material::default())]
+    }
+
+    #[test]
+    fn rays_along_an_axis_hit_whatever_the_sign_of_their_zeros() {
+        let objects = corner();
+        let bvh = Bvh::build(&objects);
+        for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+            // Off the middle, where the two triangles of a square meet.
+            let aside = (Vec3::ONE - axis) * Vec3::new(0.31, 0.17, 0.07);
+            for (from, dir) in [(axis * 9.0, -axis), (axis * -9.0 - axis, axis)] {
+                assert!(bvh.occluded(from + aside, dir, f32::INFINITY), "from {from} along {dir}");
+                assert!(bvh.closest(from + aside, dir, f32::INFINITY).is_some(), "from {from} along {dir}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_hit_tells_where_on_the_triangle_it_is() {
+        let objects = corner();
+        let hit = Bvh::build(&objects)
+            .closest(Vec3::new(0.4, 0.9, 5.0), Vec3::NEG_Z, 100.0)
+            .expect("hits the square");
+        let point = objects[0].surface_point(hit.triangle, hit.b1, hit.b2);
+        assert!((point.position_mm - Vec3::new(0.4, 0.9, 1.0)).length() < 1e-5, "{}", point.position_mm);
+        assert!((hit.distance_mm - 4.0).abs() < 1e-5);
+    }
 }

@@ -73,7 +73,7 @@ impl Glb {
 
     /// Adds bytes in a view of their own and returns its number.
     pub fn add_view(&mut self, bytes: &[u8]) -> usize {
-        while self.binary.len() % 4 != 0 {
+        while !self.binary.len().is_multiple_of(4) {
             self.binary.push(0);
         }
         let offset = self.binary.len();

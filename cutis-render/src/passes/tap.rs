@@ -68,11 +68,6 @@ impl Taps {
         }
     }
 
-    /// Weights of the taps at one, two and three spacings.
-    pub fn outer(&self) -> [f32; 3] {
-        [self.weights[1], self.weights[2], self.weights[3]]
-    }
-
     /// Largest variance that [`Taps::cells`] covers, texel².
     pub fn widest_cells(&self) -> f32 {
         WIDEST_CELLS_TEXEL2 as f32

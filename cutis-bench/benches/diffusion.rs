@@ -49,7 +49,7 @@ impl Patch {
         let object = Object::new("patch", mesh(size), Material::default());
         let atlas = Atlas::new(&object, size);
         let stretch_mm = stretch_mm_per_texel(&object, &atlas);
-        let fields = Fields { layers: vec![irradiance(&atlas.charts)], stretch_mm };
+        let fields = Fields::new(vec![irradiance(&atlas.charts)], stretch_mm);
         Self { size, charts: Arc::new(atlas.charts), fields, variances_mm2: skin_variances_mm2() }
     }
 

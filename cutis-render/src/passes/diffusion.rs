@@ -119,13 +119,13 @@ struct State {
 
 impl State {
     fn new(charts: Arc<ChartMap>, fields: Fields) -> Self {
-        let scratch = Fields::zeros(fields.layers.len(), fields.stretch_mm.len());
+        let scratch = fields.zeros_like();
         let texel_mm = median_texel_mm(&charts, &fields.stretch_mm);
         Self { charts, fields, scratch, texel_mm, saved_texel2: 0.0, left_to_read_texel2: 0.0 }
     }
 
     fn level(&self) -> Level {
-        Level { charts: Arc::clone(&self.charts), layers: Arc::new(self.fields.layers.clone()) }
+        Level { charts: Arc::clone(&self.charts), layers: Arc::clone(&self.fields.layers) }
     }
 
     fn can_be_halved_for(&self, variance_mm2: f32) -> bool {
@@ -136,7 +136,7 @@ impl State {
     fn halve(&mut self) {
         let coarse = self.charts.halved();
         self.fields = halved_fields(&self.charts, &coarse, &self.fields);
-        self.scratch = Fields::zeros(self.fields.layers.len(), self.fields.stretch_mm.len());
+        self.scratch = self.fields.zeros_like();
         self.charts = Arc::new(coarse);
         self.texel_mm *= 2.0;
         // A quarter of each amount, because a texel² is now four times as large.
@@ -182,7 +182,7 @@ fn halved_fields(fine: &ChartMap, coarse: &ChartMap, fields: &Fields) -> Fields 
     let layers = fields.layers.iter().map(|layer| halved(fine, coarse, layer, Vec4::ZERO)).collect();
     let mut stretch_mm = halved(fine, coarse, &fields.stretch_mm, Vec2::ZERO);
     stretch_mm.par_iter_mut().for_each(|s| *s *= 2.0);
-    Fields { layers, stretch_mm }
+    Fields::new(layers, stretch_mm)
 }
 
 fn halved<T>(fine: &ChartMap, coarse: &ChartMap, map: &[T], zero: T) -> Vec<T>

@@ -173,7 +173,7 @@ impl ObjectPass<'_> {
         };
         let lit = clock.time("irradiance", || irradiance(&inputs, progress));
         let charts = Arc::new(atlas.charts.clone());
-        let fields = Fields { layers: lit.layers, stretch_mm: stretch_mm.clone() };
+        let fields = Fields::new(lit.layers, stretch_mm.clone());
         let diffused =
             clock.time("blur", || Separable.diffuse(charts, fields, &kernel.variances_mm2, progress));
         Ok(ObjectMaps {

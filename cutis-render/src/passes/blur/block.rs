@@ -77,9 +77,9 @@ impl Block {
             Spread::Cells(weights) => {
                 block.centre_weight = weights[0];
                 block.rough_centre_weight = weights[0];
-                for k in 1..4 {
-                    block.push(k * stride, weights[k]);
-                    block.rough[k - 1] = (k * stride, weights[k]);
+                for (k, &weight) in weights.iter().enumerate().skip(1) {
+                    block.push(k * stride, weight);
+                    block.rough[k - 1] = (k * stride, weight);
                 }
             }
             Spread::Linear(spacing) => block.add_linear(taps, spacing, stride),

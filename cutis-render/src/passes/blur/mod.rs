@@ -16,22 +16,40 @@ use block::{BLOCK, Block};
 use glam::{Vec2, Vec4};
 use rayon::prelude::*;
 use std::ops::{Add, Mul};
+use std::sync::Arc;
 use texel::Reads;
 
 /// What is blurred: any number of four-channel layers, and the stretch that rules the width.
 #[derive(Debug, Clone)]
 pub struct Fields {
-    /// Irradiance with thickness in alpha, then further thicknesses.
-    pub layers: Vec<Vec<Vec4>>,
+    /// Irradiance with thickness in alpha, then further thicknesses. Shared with whoever keeps them as they are.
+    pub layers: Arc<Vec<Vec<Vec4>>>,
     /// Millimetres per texel along u and v.
     pub stretch_mm: Vec<Vec2>,
 }
 
 impl Fields {
-    /// Fields of zeros with the same shape.
-    pub fn zeros(layers: usize, texels: usize) -> Self {
-        Self { layers: vec![vec![Vec4::ZERO; texels]; layers], stretch_mm: vec![Vec2::ZERO; texels] }
+    /// Fields to be blurred.
+    pub fn new(layers: Vec<Vec<Vec4>>, stretch_mm: Vec<Vec2>) -> Self {
+        Self { layers: Arc::new(layers), stretch_mm }
     }
+
+    /// Zeros in the same shape.
+    pub fn zeros_like(&self) -> Self {
+        Self::new(zeros(&self.layers), vec![Vec2::ZERO; self.stretch_mm.len()])
+    }
+
+    /// The layers, to be written all over: new ones if somebody keeps the old.
+    fn layers_to_fill(&mut self) -> &mut Vec<Vec<Vec4>> {
+        if Arc::get_mut(&mut self.layers).is_none() {
+            self.layers = Arc::new(zeros(&self.layers));
+        }
+        Arc::get_mut(&mut self.layers).expect("nobody else holds layers that were just made")
+    }
+}
+
+fn zeros(layers: &[Vec<Vec4>]) -> Vec<Vec<Vec4>> {
+    layers.iter().map(|layer| vec![Vec4::ZERO; layer.len()]).collect()
 }
 
 /// Axis of a blur.
@@ -116,9 +134,9 @@ pub fn blur(charts: &ChartMap, axis: Axis, widening: Widening, source: &Fields, 
 /// The same with the axis known to the compiler: along v if `V`, else along u.
 fn blur_along<const V: bool>(charts: &ChartMap, widening: Widening, source: &Fields, target: &mut Fields) {
     let size = charts.size;
-    let Fields { layers, stretch_mm } = target;
-    let mut rows: Vec<Vec<&mut [Vec4]>> = (0..size).map(|_| Vec::with_capacity(layers.len())).collect();
-    for layer in layers {
+    let mut stretch_mm = std::mem::take(&mut target.stretch_mm);
+    let mut rows: Vec<Vec<&mut [Vec4]>> = (0..size).map(|_| Vec::new()).collect();
+    for layer in target.layers_to_fill() {
         for (row, slice) in rows.iter_mut().zip(layer.chunks_mut(size)) {
             row.push(slice);
         }
@@ -132,6 +150,7 @@ fn blur_along<const V: bool>(charts: &ChartMap, widening: Widening, source: &Fie
             }
         },
     );
+    target.stretch_mm = stretch_mm;
 }
 
 /// One blur along one axis: everything it reads.
@@ -152,14 +171,14 @@ impl<const V: bool> Blur<'_, V> {
             && let Some(block) =
                 Block::at::<V>(self.taps, self.charts, self.widening, &source.stretch_mm, texel)
         {
-            for (to, from) in layers.iter_mut().zip(&source.layers) {
+            for (to, from) in layers.iter_mut().zip(source.layers.iter()) {
                 to[x..x + BLOCK].copy_from_slice(&block.gather(from, texel));
             }
             stretch[x..x + BLOCK].copy_from_slice(&block.gather_stretch(&source.stretch_mm, texel));
             return BLOCK;
         }
         let reads = Reads::at::<V>(self.taps, self.charts, self.widening, &source.stretch_mm, texel);
-        for (to, from) in layers.iter_mut().zip(&source.layers) {
+        for (to, from) in layers.iter_mut().zip(source.layers.iter()) {
             to[x] = reads.gather(from, texel);
         }
         stretch[x] = reads.gather_stretch(&source.stretch_mm, texel);

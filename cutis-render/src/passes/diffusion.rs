@@ -65,10 +65,11 @@ const COARSE_DEVIATION_TEXELS: f32 = 1.75;
 const MIN_SIZE: usize = 64;
 /// A step may at most quadruple the variance (section 5.1 of the paper): ripples of exp(-2 pi²/3) = 0.14 %.
 const MAX_RATIO: f32 = 4.0;
-/// Only triple it while the light is spread over less than [`FINE_TEXEL2`], where interpolation adds to the ripples.
+/// Only triple it from a deviation of one to two texels, where interpolation adds to the ripples. Below, the light
+/// keeps to its texels whatever is done.
 const FINE_RATIO: f32 = 3.0;
-/// Variance in texel² below which steps are finer: two texels of deviation.
-const FINE_TEXEL2: f32 = 4.0;
+/// Variances in texel² between which steps are finer.
+const FINE_TEXEL2: std::ops::Range<f32> = 0.9..4.0;
 /// Largest first step from raw texels, texel²: the taps then lie one texel apart.
 const FIRST_STEP_TEXEL2: f32 = 1.1;
 /// Mean variance that bilinear reads add, texel²: f(1-f) over all f.
@@ -148,7 +149,7 @@ impl State {
     /// Variance to go to next on the way from `reached` to `wanted`, so that the taps never skip texels that matter.
     fn next_step_mm2(&self, reached_mm2: f32, wanted_mm2: f32) -> f32 {
         let texel2_mm2 = self.texel_mm * self.texel_mm;
-        let ratio = if reached_mm2 < FINE_TEXEL2 * texel2_mm2 { FINE_RATIO } else { MAX_RATIO };
+        let ratio = if FINE_TEXEL2.contains(&(reached_mm2 / texel2_mm2)) { FINE_RATIO } else { MAX_RATIO };
         // 2 % of slack, so that a kernel made for this rule does not cost a step more.
         let most_mm2 = (ratio * reached_mm2).max(reached_mm2 + FIRST_STEP_TEXEL2 * texel2_mm2);
         if wanted_mm2 <= 1.02 * most_mm2 { wanted_mm2 } else { most_mm2 }

@@ -29,11 +29,13 @@ pub fn cutis(folder: &Path) -> Command {
 }
 
 /// Runs the program in a folder.
+#[allow(dead_code, reason = "not every test file needs it")]
 pub fn run(folder: &Path, args: &[&str]) -> Output {
     cutis(folder).args(args).output().expect("the program starts")
 }
 
 /// What was printed on stdout.
+#[allow(dead_code, reason = "not every test file needs it")]
 pub fn stdout(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).expect("text")
 }

@@ -6,7 +6,7 @@
 
 use crate::passes::ambient::Ambient;
 use crate::passes::atlas::Atlas;
-use crate::passes::visibility::{light_facing_surface, visible_fraction};
+use crate::passes::visibility::{faces, light_facing_surface, visible_fraction};
 use crate::prepare::{FilteredEnvironment, RhoDt};
 use crate::progress::Progress;
 use crate::sampling::random2;
@@ -148,23 +148,14 @@ fn from_environment(inputs: &IrradianceInputs, point: &SurfacePoint, normal: Vec
     environment.irradiance((normal + bent - point.normal).normalize_or(normal)) * open
 }
 
-/// Distance d through the body towards a light, corrected by the angle as the paper does: m where the normals at both
-/// ends agree, m cos theta where they are opposite; 0 on the lit side.
+/// Distance d through the body towards a light, mm; 0 on the lit side, and never more than what is opaque anyway.
 fn distance_mm(inputs: &IrradianceInputs, l: usize, point: &SurfacePoint) -> f32 {
     let light = &inputs.scene.lights[l];
-    let dir_to_light = light.sample(point.position_mm).dir_to_light;
-    if point.normal.dot(dir_to_light) >= 0.0 {
+    if faces(point, light) {
         return 0.0;
     }
-    match light_facing_surface(inputs.scene, inputs.bvh, point, light) {
-        Some(there) => {
-            let cos = point.normal.dot(dir_to_light).abs();
-            let opposite = (-there.normal.dot(point.normal)).max(0.0);
-            let corrected = there.distance_mm * (1.0 + (cos - 1.0) * opposite);
-            corrected.min(inputs.opaque_mm)
-        }
-        None => inputs.opaque_mm,
-    }
+    let there = light_facing_surface(inputs.scene, inputs.bvh, point, light);
+    there.map_or(inputs.opaque_mm, |there| there.corrected_mm.min(inputs.opaque_mm))
 }
 
 /// The normal with the material's relief.

@@ -174,11 +174,16 @@ impl Resolve<'_> {
         }
     }
 
-    /// Distance along the surface to the light-facing place, mm; infinite if another chart or object holds that, for
-    /// then no blur has brought its light here.
+    /// Distance along the surface to the light-facing place, mm. Within a chart the texture tells. Between charts no blur
+    /// has brought its light here if it lies on the other side of a thin part (opposite normals: infinitely far); around
+    /// an edge (like normals) it is a neighbour beyond the seam, as far away as it looks.
     fn apart_mm(&self, place: &Place, there: &LightFacing) -> f32 {
-        let same = std::ptr::eq(place.maps, &self.maps[there.object]) && place.chart == there.chart;
-        if same { along_surface_mm(place.maps, place.point.uv, there.uv) } else { f32::INFINITY }
+        if std::ptr::eq(place.maps, &self.maps[there.object]) && place.chart == there.chart {
+            return along_surface_mm(place.maps, place.point.uv, there.uv);
+        }
+        let opposite = (-there.normal.dot(place.point.normal)).clamp(0.0, 1.0);
+        // 1e-6 keeps the quotient finite; a micrometre over it is a metre.
+        there.distance_mm / (1.0 - opposite).max(1e-6)
     }
 
     fn layer(&self, aov: Aov, place: &Place, parts: &Parts) -> Vec4 {

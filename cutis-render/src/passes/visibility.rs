@@ -22,6 +22,9 @@ pub struct LightFacing {
     pub normal: Vec3,
     /// Distance m through the body, towards the light, mm.
     pub distance_mm: f32,
+    /// Distance d of the paper, corrected by the angle: m where the normals at both ends agree, m cos theta where they
+    /// are opposite, mm.
+    pub corrected_mm: f32,
 }
 
 /// Fraction of the light's disc that the point sees, by `samples` rays turned by `shift`.
@@ -57,11 +60,14 @@ pub fn light_facing_surface(
     let hit = bvh.closest(origin, towards.dir_to_light, towards.distance_mm)?;
     let object = &scene.objects[hit.object as usize];
     let there = object.surface_point(hit.triangle, hit.b1, hit.b2);
+    let cos = point.normal.dot(towards.dir_to_light).abs();
+    let opposite = (-there.normal.dot(point.normal)).max(0.0);
     Some(LightFacing {
         object: hit.object as usize,
         chart: object.charts.of_triangle[hit.triangle as usize],
         uv: there.uv,
         normal: there.normal,
         distance_mm: hit.distance_mm,
+        corrected_mm: hit.distance_mm * (1.0 + (cos - 1.0) * opposite),
     })
 }

@@ -10,7 +10,7 @@ pub(super) const BLOCK: usize = 8;
 /// Largest ratio of texel sizes within a block: 1 % from the middle, 2 % in variance at the worst texel.
 const MAX_RATIO_INSIDE: f32 = 1.02;
 /// Largest ratio to the texels under the outermost taps. Taps that stand symmetrically although the surface does not
-/// shift light towards the coarser side; at 1.1 a mapping that doubles its texels over 500 gains 0.7 % of energy.
+/// shift light towards the coarser side; at 1.06 a mapping that doubles its texels over 500 gains 0.7 % of energy.
 const MAX_RATIO_AROUND: f32 = 1.03;
 /// Distances that are read at most: three cubic taps less than four texels apart reach 14 texels.
 const MAX_PAIRS: usize = 14;

@@ -3,6 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 #![allow(clippy::print_stderr, reason = "a skipped test must say so")]
 
+pub mod refusal;
+
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 

@@ -86,18 +86,8 @@ impl Atlas {
 impl ChartMap {
     /// Measures how far every texel is from the edge of its chart.
     pub fn new(size: usize, chart: Vec<u32>) -> Self {
-        let mut reach_u = vec![0; size * size];
-        reach_u
-            .par_chunks_mut(size)
-            .zip(chart.par_chunks(size))
-            .for_each(|(reach, row)| reach_along(row, reach));
-        let mut transposed = vec![0; size * size];
-        transposed.par_chunks_mut(size).enumerate().for_each(|(x, reach)| {
-            let column: Vec<u32> = (0..size).map(|y| chart[y * size + x]).collect();
-            reach_along(&column, reach);
-        });
-        let reach_v =
-            (0..size * size).into_par_iter().map(|i| transposed[i % size * size + i / size]).collect();
+        let (reach_u, reach_v) =
+            rayon::join(|| reach_along_rows(&chart, size), || reach_along_columns(&chart, size));
         Self { size, chart, reach_u, reach_v }
     }
 
@@ -253,20 +243,50 @@ fn nearest_on_triangle(corners: [Vec2; 3], p: Vec2) -> (f32, f32, f32) {
     best
 }
 
-/// For each element of a line: how many equal elements follow it without a gap on both sides, the smaller count.
-fn reach_along(line: &[u32], reach: &mut [u16]) {
-    let mut run = 0u16;
-    for i in 0..line.len() {
-        run = if i > 0 && line[i] == line[i - 1] { run.saturating_add(1) } else { 0 };
-        reach[i] = run;
+/// For each texel: how many of the same chart follow it in its row without a gap on both sides, the smaller count.
+fn reach_along_rows(chart: &[u32], size: usize) -> Vec<u16> {
+    let mut reach = vec![0u16; chart.len()];
+    reach.par_chunks_mut(size).zip(chart.par_chunks(size)).for_each(|(reach, line)| {
+        for i in 1..size {
+            reach[i] = if line[i] == line[i - 1] { reach[i - 1].saturating_add(1) } else { 0 };
+        }
+        let mut run = 0u16;
+        reach[size - 1] = 0;
+        for i in (0..size - 1).rev() {
+            run = if line[i] == line[i + 1] { run.saturating_add(1) } else { 0 };
+            reach[i] = reach[i].min(run);
+        }
+    });
+    reach
+}
+
+/// The same for columns: row by row, each from the one above it, then from the one below.
+fn reach_along_columns(chart: &[u32], size: usize) -> Vec<u16> {
+    let row = |y: usize| &chart[y * size..(y + 1) * size];
+    let mut reach = vec![0u16; chart.len()];
+    for y in 1..size {
+        let (done, rest) = reach.split_at_mut(y * size);
+        let above = &done[(y - 1) * size..];
+        for (((to, from), a), b) in rest[..size].iter_mut().zip(above).zip(row(y)).zip(row(y - 1)) {
+            *to = if a == b { from.saturating_add(1) } else { 0 };
+        }
     }
-    for i in (0..line.len()).rev() {
-        run = if i + 1 < line.len() && line[i] == line[i + 1] { run.saturating_add(1) } else { 0 };
-        reach[i] = reach[i].min(run);
+    let mut run = vec![0u16; size];
+    reach[(size - 1) * size..].fill(0);
+    for y in (0..size - 1).rev() {
+        let line = reach[y * size..(y + 1) * size].iter_mut().zip(&mut run);
+        for (((to, run), a), b) in line.zip(row(y)).zip(row(y + 1)) {
+            *run = if a == b { run.saturating_add(1) } else { 0 };
+            *to = (*to).min(*run);
+        }
     }
+    reach
 }
 
 fn most_common(charts: [u32; 4]) -> u32 {
+    if charts == [charts[0]; 4] {
+        return charts[0];
+    }
     let count = |c: u32| charts.iter().filter(|&&other| other == c).count();
     let covered = charts.into_iter().filter(|&c| c != NO_CHART);
     covered.max_by_key(|&c| (count(c), std::cmp::Reverse(c))).unwrap_or(NO_CHART)

@@ -74,6 +74,8 @@ const FINE_TEXEL2: std::ops::Range<f32> = 0.9..4.0;
 const FIRST_STEP_TEXEL2: f32 = 1.1;
 /// Mean variance that bilinear reads add, texel²: f(1-f) over all f.
 const BILINEAR_TEXEL2: f32 = 1.0 / 6.0;
+/// Texels that are asked for the median of their size.
+const MEDIAN_TEXELS: usize = 1 << 14;
 /// Variance that averaging two neighbours adds, in texel² of the halved texture: (1/2)² of the finer, 1/16 here.
 const HALVING_TEXEL2: f32 = 1.0 / 16.0;
 
@@ -165,8 +167,9 @@ impl State {
 
 /// The texel size (the smaller of both directions) below which half of the surface lies, mm.
 fn median_texel_mm(charts: &ChartMap, stretch_mm: &[Vec2]) -> f32 {
-    // Every seventh texel is plenty for a median, and 7 divides no texture size.
-    let covered = charts.chart.iter().zip(stretch_mm).step_by(7).filter(|(c, _)| **c != NO_CHART);
+    // A few thousand texels are plenty for a median; an odd stride divides no texture size.
+    let stride = (stretch_mm.len() / MEDIAN_TEXELS) | 1;
+    let covered = charts.chart.iter().zip(stretch_mm).step_by(stride).filter(|(c, _)| **c != NO_CHART);
     let mut sizes: Vec<(f32, f64)> = covered.map(|(_, s)| (s.min_element(), f64::from(s.x * s.y))).collect();
     sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
     let total: f64 = sizes.iter().map(|s| s.1).sum();
@@ -195,8 +198,12 @@ where
         if chart == NO_CHART {
             return zero;
         }
-        let own =
-            fine.children(i % coarse.size, i / coarse.size).into_iter().filter(|&c| fine.chart[c] == chart);
+        let children = fine.children(i % coarse.size, i / coarse.size);
+        if children.iter().all(|&c| fine.chart[c] == chart) {
+            let [a, b, c, d] = children.map(|c| map[c]);
+            return (a + b + c + d) * 0.25;
+        }
+        let own = children.into_iter().filter(|&c| fine.chart[c] == chart);
         let (sum, count) = own.fold((zero, 0.0f32), |(sum, count), c| (sum + map[c], count + 1.0));
         sum * count.recip()
     };

@@ -1,10 +1,12 @@
 //! Stretch: how many millimetres of surface one texel covers along u and along v
 //! (d'Eon, Luebke & Enderton 2007, section 5.1; the paper stores the reciprocal).
 //!
-//! The derivatives of a flat triangle are constant, so this is exact per triangle where the paper takes screen-space
-//! differences.
+//! The derivatives of a flat triangle are exact, where the paper takes screen-space differences; but they jump from one
+//! triangle to the next, which the surface that the mesh stands for does not. So the squared lengths of dX/du and dX/dv
+//! (the first fundamental form's E and G) are averaged at every vertex over the triangles around it, by area, and
+//! interpolated between.
 
-use crate::passes::atlas::{Atlas, NO_CHART};
+use crate::passes::atlas::{Atlas, NO_CHART, TexelSurface};
 use cutis_scene::Object;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -15,25 +17,84 @@ const MIN_STRETCH_MM: f32 = 1e-3;
 /// Millimetres per texel along u and v, for every texel of the atlas. Empty texels hold 0.
 pub fn stretch_mm_per_texel(object: &Object, atlas: &Atlas) -> Vec<Vec2> {
     let texels = atlas.size as f32;
-    let per_triangle: Vec<Vec2> = (0..object.mesh.triangles.len())
-        .into_par_iter()
-        .map(|t| {
-            let [along_u, along_v] = derivatives_mm(object, t);
-            (Vec2::new(along_u.length(), along_v.length()) / texels).max(Vec2::splat(MIN_STRETCH_MM))
-        })
-        .collect();
-    let of = |triangle: u32| if triangle == NO_CHART { Vec2::ZERO } else { per_triangle[triangle as usize] };
-    atlas.surface.par_iter().map(|s| of(s.triangle)).collect()
+    let at_vertices = squared_lengths_at_vertices_mm2(object);
+    let of = |s: &TexelSurface| {
+        if s.triangle == NO_CHART {
+            return Vec2::ZERO;
+        }
+        let [a, b, c] = object.mesh.triangles[s.triangle as usize].map(|v| at_vertices[v as usize]);
+        let squared = a * (1.0 - s.b1 - s.b2) + b * s.b1 + c * s.b2;
+        (squared.max(Vec2::ZERO).map(f32::sqrt) / texels).max(Vec2::splat(MIN_STRETCH_MM))
+    };
+    atlas.surface.par_iter().map(of).collect()
 }
 
-/// dX/du and dX/dv of a triangle, mm per unit of the texture.
-pub fn derivatives_mm(object: &Object, triangle: usize) -> [Vec3; 2] {
+/// |dX/du|² and |dX/dv|² at every vertex, mm² per unit of the texture.
+fn squared_lengths_at_vertices_mm2(object: &Object) -> Vec<Vec2> {
+    let mesh = &object.mesh;
+    let mut sums = vec![(Vec2::ZERO, 0.0f32); mesh.positions_mm.len()];
+    for (t, vertices) in mesh.triangles.iter().enumerate() {
+        let Some([along_u, along_v]) = derivatives_mm(object, t) else { continue };
+        let area_mm2 = mesh.area_mm2(t);
+        for &v in vertices {
+            let (sum, weight) = &mut sums[v as usize];
+            *sum += area_mm2 * Vec2::new(along_u.length_squared(), along_v.length_squared());
+            *weight += area_mm2;
+        }
+    }
+    sums.into_iter().map(|(sum, weight)| sum / weight.max(f32::MIN_POSITIVE)).collect()
+}
+
+/// dX/du and dX/dv of a triangle, mm per unit of the texture. `None` if it has no area in the texture.
+fn derivatives_mm(object: &Object, triangle: usize) -> Option<[Vec3; 2]> {
     let [p0, p1, p2] = object.mesh.corners_mm(triangle);
     let [t0, t1, t2] = object.mesh.corner_uvs(triangle);
     let (e1, e2, d1, d2) = (p1 - p0, p2 - p0, t1 - t0, t2 - t0);
     let determinant = d1.perp_dot(d2);
-    if determinant == 0.0 {
-        return [Vec3::ZERO; 2];
+    (determinant != 0.0)
+        .then(|| [(e1 * d2.y - e2 * d1.y) / determinant, (e2 * d1.x - e1 * d2.x) / determinant])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cutis_scene::{Material, Mesh};
+
+    /// Two triangles over the unit square of the texture: 3 mm by 2 mm, bent along the diagonal so that the second is
+    /// twice as wide.
+    fn bent() -> Object {
+        let corners = [
+            (0.0, 0.0, [0.0, 0.0]),
+            (3.0, 0.0, [1.0, 0.0]),
+            (0.0, -2.0, [0.0, 1.0]),
+            (6.0, -2.0, [1.0, 1.0]),
+        ];
+        let mesh = Mesh {
+            positions_mm: corners.iter().map(|c| Vec3::new(c.0, c.1, 0.0)).collect(),
+            uvs: corners.iter().map(|c| Vec2::from_array(c.2)).collect(),
+            triangles: vec![[0, 2, 1], [1, 2, 3]],
+            ..Mesh::default()
+        };
+        Object::new("bent", mesh, Material::default())
     }
-    [(e1 * d2.y - e2 * d1.y) / determinant, (e2 * d1.x - e1 * d2.x) / determinant]
+
+    #[test]
+    fn the_derivatives_of_a_triangle_are_its_edges_in_the_texture() {
+        let [along_u, along_v] = derivatives_mm(&bent(), 0).expect("has area");
+        assert!((along_u - Vec3::new(3.0, 0.0, 0.0)).length() < 1e-6);
+        assert!((along_v - Vec3::new(0.0, -2.0, 0.0)).length() < 1e-6);
+    }
+
+    #[test]
+    fn stretch_is_continuous_across_an_edge() {
+        let object = bent();
+        let size = 64;
+        let stretch = stretch_mm_per_texel(&object, &Atlas::new(&object, size));
+        // Along a row the stretch in u runs from 3 mm on the left to 6 mm on the right without a jump.
+        let row = &stretch[32 * size..33 * size];
+        let steps = row.windows(2).map(|w| (w[1].x - w[0].x).abs());
+        let largest = steps.fold(0.0, f32::max);
+        assert!(row[0].x < 4.5 / 64.0 && row[63].x > 5.0 / 64.0, "{} {}", row[0].x, row[63].x);
+        assert!(largest < 0.1 / 64.0, "{largest}");
+    }
 }

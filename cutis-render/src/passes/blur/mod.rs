@@ -5,19 +5,22 @@
 //! leaves the texel's own chart: towards a seam the spacing shrinks with the distance to it, down to nothing.
 //!
 //! Placing and weighing taps costs more than reading them. Where the stretch hardly varies, which is nearly everywhere,
-//! [`block`] does it once for neighbouring texels; elsewhere [`texel`] does it for each.
+//! it is done once for eight neighbouring texels, elsewhere for each ([`lines`]).
 
-mod block;
-mod texel;
+mod bundle;
+mod lines;
+mod reads;
 
 use crate::passes::atlas::ChartMap;
-use crate::passes::tap::{TAPS, Taps};
-use block::{BLOCK, Block};
+use crate::passes::tap::Taps;
+use bundle::{BLOCK, Block};
 use glam::{Vec2, Vec4};
+use lines::Lines;
 use rayon::prelude::*;
-use std::ops::{Add, Mul};
+use reads::Reads;
+use std::ops::Range;
 use std::sync::Arc;
-use texel::Reads;
+use wide::f32x8;
 
 /// What is blurred: any number of four-channel layers, and the stretch that rules the width.
 #[derive(Debug, Clone)]
@@ -36,7 +39,7 @@ impl Fields {
 
     /// Zeros in the same shape.
     pub fn zeros_like(&self) -> Self {
-        Self::new(zeros(&self.layers), vec![Vec2::ZERO; self.stretch_mm.len()])
+        Self::new(zeros(&self.layers), bytemuck::zeroed_vec(self.stretch_mm.len()))
     }
 
     /// The layers, to be written all over: new ones if somebody keeps the old.
@@ -49,7 +52,9 @@ impl Fields {
 }
 
 fn zeros(layers: &[Vec<Vec4>]) -> Vec<Vec<Vec4>> {
-    layers.iter().map(|layer| vec![Vec4::ZERO; layer.len()]).collect()
+    // Asks the system for memory that is zero already: pages come into being where they are first written to, by all
+    // threads.
+    layers.iter().map(|layer| bytemuck::zeroed_vec(layer.len())).collect()
 }
 
 /// Axis of a blur.
@@ -85,9 +90,9 @@ impl Widening {
         // A cubic read has no variance of its own, a linear one has; see `Taps`.
         let cubic = taps.cubic_spacing(variance);
         if cubic < CUBIC_SPACING && from < CUBIC_TEXEL2 {
-            return Spread::Cubic(cubic.min((room - 1.0) / 3.0));
+            return Spread::Spaced { spacing: cubic.min((room - 1.0) / 3.0), cubic: true };
         }
-        Spread::Linear(taps.spacing(variance).min(room / 3.0))
+        Spread::Spaced { spacing: taps.spacing(variance).min(room / 3.0), cubic: false }
     }
 }
 
@@ -96,22 +101,8 @@ impl Widening {
 enum Spread {
     /// On neighbouring texels, with these weights: the Gaussian integrated over each texel.
     Cells([f32; 4]),
-    /// This many texels apart, read by cubic interpolation.
-    Cubic(f32),
-    /// This many texels apart, read by linear interpolation.
-    Linear(f32),
-}
-
-impl Spread {
-    /// Distance of the farthest texel that is read, texels.
-    #[inline]
-    fn farthest_texel(self) -> usize {
-        match self {
-            Self::Cells(_) => 3,
-            Self::Cubic(spacing) => (3.0 * spacing) as usize + 2,
-            Self::Linear(spacing) => (3.0 * spacing) as usize + 1,
-        }
-    }
+    /// This many texels apart, interpolated cubically or linearly.
+    Spaced { spacing: f32, cubic: bool },
 }
 
 /// Below this variance in texel² light has hardly left its texel (1.2 % of it at the limit): the texels count as raw,
@@ -122,6 +113,9 @@ const RAW_TEXEL2: f32 = 0.06;
 const CUBIC_SPACING: f32 = 4.0;
 /// Variance in texel² from which on linear reads are good enough at any spacing.
 const CUBIC_TEXEL2: f32 = 3.0;
+
+/// Texels that share taps at most.
+const LARGEST_BLOCK: usize = 4 * BLOCK;
 
 /// Blurs `source` along an axis into `target`.
 pub fn blur(charts: &ChartMap, axis: Axis, widening: Widening, source: &Fields, target: &mut Fields) {
@@ -141,59 +135,80 @@ fn blur_along<const V: bool>(charts: &ChartMap, widening: Widening, source: &Fie
             row.push(slice);
         }
     }
-    let blur = Blur::<V> { taps: &TAPS, charts, widening, source };
+    let lines = Lines::<V> { charts, widening, stretch_mm: &source.stretch_mm };
     rows.into_par_iter().zip(stretch_mm.par_chunks_mut(size)).enumerate().for_each(
         |(y, (mut layers, stretch))| {
-            let mut x = 0;
-            while x < size {
-                x += blur.some_texels(y * size, x, &mut layers, stretch);
+            let mut row = Row { first: y * size, layers: &mut layers, stretch };
+            for x in (0..size).step_by(LARGEST_BLOCK) {
+                row.fill(&lines, source, x..(x + LARGEST_BLOCK).min(size));
             }
         },
     );
     target.stretch_mm = stretch_mm;
 }
 
-/// One blur along one axis: everything it reads.
-struct Blur<'a, const V: bool> {
-    taps: &'a Taps,
-    charts: &'a ChartMap,
-    widening: Widening,
-    source: &'a Fields,
+/// One row of everything that is blurred.
+struct Row<'a, 'b> {
+    /// The row's first texel.
+    first: usize,
+    layers: &'a mut [&'b mut [Vec4]],
+    stretch: &'a mut [Vec2],
 }
 
-impl<const V: bool> Blur<'_, V> {
-    /// Blurs a block of texels of a row from `x` on if one set of taps will do for all, else one texel; returns how
-    /// many it blurred. `row` is the number of the row's first texel.
-    #[inline(always)]
-    fn some_texels(&self, row: usize, x: usize, layers: &mut [&mut [Vec4]], stretch: &mut [Vec2]) -> usize {
-        let (texel, source) = (row + x, self.source);
-        if x + BLOCK <= self.charts.size
-            && let Some(block) =
-                Block::at::<V>(self.taps, self.charts, self.widening, &source.stretch_mm, texel)
-        {
-            for (to, from) in layers.iter_mut().zip(source.layers.iter()) {
-                to[x..x + BLOCK].copy_from_slice(&block.gather(from, texel));
+impl Row<'_, '_> {
+    /// Fills some neighbours: mixing what the first and the last would read if that will do, else in halves, and at
+    /// last each with its own.
+    fn fill<const V: bool>(&mut self, lines: &Lines<V>, source: &Fields, xs: Range<usize>) {
+        if xs.len().is_multiple_of(BLOCK) {
+            if let Some(ends) = lines.of_block(self.first + xs.start, xs.len()) {
+                self.fill_block(&ends, source, xs);
+                return;
             }
-            stretch[x..x + BLOCK].copy_from_slice(&block.gather_stretch(&source.stretch_mm, texel));
-            return BLOCK;
+            if xs.len() > BLOCK {
+                let middle = xs.start + (xs.len() / 2).next_multiple_of(BLOCK);
+                self.fill(lines, source, xs.start..middle);
+                self.fill(lines, source, middle..xs.end);
+                return;
+            }
         }
-        let reads = Reads::at::<V>(self.taps, self.charts, self.widening, &source.stretch_mm, texel);
-        for (to, from) in layers.iter_mut().zip(source.layers.iter()) {
-            to[x] = reads.gather(from, texel);
+        for x in xs {
+            let texel = self.first + x;
+            let reads = lines.of_texel(texel);
+            for (to, from) in self.layers.iter_mut().zip(source.layers.iter()) {
+                to[x] = reads.gather(from, texel);
+            }
+            self.stretch[x] = reads.gather_stretch(&source.stretch_mm, texel);
         }
-        stretch[x] = reads.gather_stretch(&source.stretch_mm, texel);
-        1
+    }
+
+    #[inline(always)]
+    fn fill_block(&mut self, (start, end): &(Reads, Option<Reads>), source: &Fields, xs: Range<usize>) {
+        let texel = self.first + xs.start;
+        let end = end.as_ref();
+        for (to, from) in self.layers.iter_mut().zip(source.layers.iter()) {
+            mix_ends(&mut to[xs.clone()], texel, start, end, |reads, t| reads.gather::<[f32x8; 4]>(from, t));
+        }
+        mix_ends(&mut self.stretch[xs], texel, start, end, |reads, t| {
+            reads.gather_stretch::<[f32x8; 2]>(&source.stretch_mm, t)
+        });
     }
 }
 
-/// What can be blurred: weighted sums of it exist.
-trait Field: Copy + Add<Output = Self> + Mul<f32, Output = Self> {}
-
-impl<T: Copy + Add<Output = T> + Mul<f32, Output = T>> Field for T {}
-
-/// Weights of cubic interpolation through four neighbours (Catmull & Rom 1974), exact for parabolas.
+/// Fills `to` with what the taps of the first texel give, passing over evenly into what those of the last give.
 #[inline(always)]
-pub(super) fn catmull_rom(f: f32) -> [f32; 4] {
-    let (f2, f3) = (f * f, f * f * f);
-    [-0.5 * f + f2 - 0.5 * f3, 1.0 - 2.5 * f2 + 1.5 * f3, 0.5 * f + 2.0 * f2 - 1.5 * f3, -0.5 * f2 + 0.5 * f3]
+fn mix_ends<B: Block>(
+    to: &mut [B::Texel],
+    first: usize,
+    start: &Reads,
+    end: Option<&Reads>,
+    gather: impl Fn(&Reads, usize) -> B,
+) {
+    let step = 1.0 / (to.len() - 1) as f32;
+    for (i, to) in to.chunks_exact_mut(BLOCK).enumerate() {
+        let mut sum = gather(start, first + i * BLOCK);
+        if let Some(end) = end {
+            sum = sum.mixed(gather(end, first + i * BLOCK), (i * BLOCK) as f32 * step, step);
+        }
+        sum.store(to);
+    }
 }

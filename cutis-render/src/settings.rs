@@ -46,7 +46,7 @@ impl Default for Settings {
             irradiance_size: 2048,
             gaussians: 6,
             shadow_samples: 4,
-            ambient_samples: 24,
+            ambient_samples: 8,
             diffusion_report: false,
             seed: 1,
             aovs: Vec::new(),

@@ -1,12 +1,12 @@
 //! How open a point is to its surroundings: ambient occlusion and the mean unoccluded direction, by rays.
 //!
-//! Kept in a texture a quarter as wide as the irradiance: occlusion varies slowly, and the smoothing over 5 × 5 texels
-//! that removes the noise of few rays would blur it anyway.
+//! Kept in a texture a quarter as wide as the irradiance: occlusion varies slowly, and the smoothing over 4 × 4 texels
+//! that gathers the rays of all of them would blur it anyway.
 
 use crate::passes::atlas::{Atlas, ChartMap, NO_CHART};
 use crate::progress::Progress;
 use crate::sampling::{cosine_hemisphere, r2_point, random2};
-use cutis_scene::{Bvh, Object};
+use cutis_scene::{Bvh, Object, SurfacePoint};
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
@@ -23,25 +23,24 @@ pub struct Ambient {
 }
 
 impl Ambient {
-    /// Casts `samples` rays from every texel of the quarter-size map.
+    /// Casts `samples` rays from every texel of `charts`, the atlas at a quarter of its size.
     pub fn new(
         object: &Object,
         atlas: &Atlas,
+        charts: ChartMap,
         bvh: &Bvh,
         samples: u32,
         seed: u64,
         progress: &dyn Progress,
     ) -> Self {
-        let half = atlas.charts.halved();
-        let charts = half.halved();
         progress.begin("ambient occlusion", charts.size as u64);
         let mut raw = vec![Vec4::ZERO; charts.chart.len()];
+        let shift = random2(0, 0, STREAM, seed);
         raw.par_chunks_mut(charts.size).enumerate().for_each(|(y, row)| {
             for (x, texel) in row.iter_mut().enumerate() {
                 let chart = charts.chart[y * charts.size + x];
-                if let Some(fine) = representative(atlas, chart, x, y) {
-                    let shift = random2(x as u32, y as u32, STREAM, seed);
-                    *texel = openness(object, atlas, bvh, fine, samples, shift);
+                if let Some(point) = atlas.point_under(object, chart, [x, y], 4) {
+                    *texel = openness(bvh, &point, samples, first_point(x, y, samples), shift);
                 }
             }
             progress.advance(1);
@@ -59,24 +58,19 @@ impl Ambient {
     }
 }
 
-/// A full-size texel of the chart under a quarter-size one, the most central first.
-fn representative(atlas: &Atlas, chart: u32, x: usize, y: usize) -> Option<usize> {
-    if chart == NO_CHART {
-        return None;
-    }
-    let rows = [1, 2, 0, 3];
-    let texels = rows.iter().flat_map(|dy| rows.iter().map(move |dx| (4 * y + dy) * atlas.size + 4 * x + dx));
-    texels.into_iter().find(|&texel| atlas.charts.chart[texel] == chart)
+/// The texels of every square of 4 × 4 share one sequence of points, so that the smoothing, which takes in just as many,
+/// has them all (interleaved sampling, Keller & Heidrich 2001).
+fn first_point(x: usize, y: usize, samples: u32) -> u32 {
+    (4 * (y % 4) + x % 4) as u32 * samples
 }
 
-fn openness(object: &Object, atlas: &Atlas, bvh: &Bvh, texel: usize, samples: u32, shift: Vec2) -> Vec4 {
-    let Some(point) = atlas.surface_point(object, texel) else { return Vec4::ZERO };
+fn openness(bvh: &Bvh, point: &SurfacePoint, samples: u32, first: u32, shift: Vec2) -> Vec4 {
     if samples == 0 {
         return Vec4::W; // nobody asked: open to all sides
     }
     let origin = bvh.step_off(point.lifted_position_mm, point.flat_normal);
     let mut open = Vec4::ZERO;
-    for i in 0..samples {
+    for i in first..first + samples {
         let dir = cosine_hemisphere(r2_point(i, shift), point.normal);
         if !bvh.occluded(origin, dir, f32::INFINITY) {
             open += dir.extend(1.0);
@@ -85,7 +79,7 @@ fn openness(object: &Object, atlas: &Atlas, bvh: &Bvh, texel: usize, samples: u3
     open / samples as f32
 }
 
-/// Mean over the neighbours of the same chart.
+/// Mean over a square of 4 × 4 texels around each, those on its edge by half, as far as they belong to the same chart.
 fn smoothed(charts: &ChartMap, map: &[Vec4]) -> Vec<Vec4> {
     let size = charts.size;
     let mean = |i: usize| {
@@ -94,10 +88,16 @@ fn smoothed(charts: &ChartMap, map: &[Vec4]) -> Vec<Vec4> {
             return Vec4::ZERO;
         }
         let span = |c: usize| c.saturating_sub(SMOOTHING)..(c + SMOOTHING + 1).min(size);
-        let neighbours = span(i / size).flat_map(|y| span(i % size).map(move |x| y * size + x));
-        let own = neighbours.filter(|&n| charts.chart[n] == chart);
-        let (sum, count) = own.fold((Vec4::ZERO, 0.0), |(sum, count), n| (sum + map[n], count + 1.0));
-        sum / count
+        let share = |a: usize, b: usize| if a.abs_diff(b) == SMOOTHING { 0.5 } else { 1.0 };
+        let (mut sum, mut weight) = (Vec4::ZERO, 0.0);
+        for (y, x) in span(i / size).flat_map(|y| span(i % size).map(move |x| (y, x))) {
+            if charts.chart[y * size + x] == chart {
+                let share = share(y, i / size) * share(x, i % size);
+                sum += map[y * size + x] * share;
+                weight += share;
+            }
+        }
+        sum / weight
     };
     (0..size * size).into_par_iter().map(mean).collect()
 }

@@ -81,6 +81,26 @@ impl Atlas {
         let s = self.surface[texel];
         (s.triangle != NO_CHART).then(|| object.surface_point(s.triangle, s.b1, s.b2))
     }
+
+    /// The surface under a texel of a smaller map that belongs to `chart`: `times` as wide as one of these. Of the texels
+    /// of that chart the most central one stands for all.
+    pub fn point_under(
+        &self,
+        object: &Object,
+        chart: u32,
+        [x, y]: [usize; 2],
+        times: usize,
+    ) -> Option<SurfacePoint> {
+        if chart == NO_CHART {
+            return None;
+        }
+        let off_centre = |i: usize| (2 * i + 1).abs_diff(times);
+        let own = (0..times * times)
+            .map(|i| [i % times, i / times])
+            .filter(|[dx, dy]| self.charts.chart[(times * y + dy) * self.size + times * x + dx] == chart);
+        let [dx, dy] = own.min_by_key(|[dx, dy]| off_centre(*dx) + off_centre(*dy))?;
+        self.surface_point(object, (times * y + dy) * self.size + times * x + dx)
+    }
 }
 
 impl ChartMap {
@@ -108,25 +128,29 @@ impl ChartMap {
         [first, first + 1, first + self.size, first + self.size + 1]
     }
 
+    /// The four texels around `uv`, and their weights in a bilinear read.
+    pub fn around(&self, uv: Vec2) -> [(usize, f32); 4] {
+        let p = uv * self.size as f32 - 0.5;
+        let floor = p.floor();
+        let f = p - floor;
+        let last = self.size as i32 - 1;
+        let column = [floor.x as i32, floor.x as i32 + 1].map(|x| x.clamp(0, last) as usize);
+        let row = [floor.y as i32, floor.y as i32 + 1].map(|y| y.clamp(0, last) as usize * self.size);
+        [
+            (row[0] + column[0], (1.0 - f.x) * (1.0 - f.y)),
+            (row[0] + column[1], f.x * (1.0 - f.y)),
+            (row[1] + column[0], (1.0 - f.x) * f.y),
+            (row[1] + column[1], f.x * f.y),
+        ]
+    }
+
     /// Bilinear read of `map` at `uv` from texels of one chart only. `None` if none of the four belongs to it.
     pub fn sample<T>(&self, map: &[T], uv: Vec2, chart: u32) -> Option<T>
     where
         T: Copy + Default + Add<Output = T> + Mul<f32, Output = T>,
     {
-        let p = uv * self.size as f32 - 0.5;
-        let (x0, y0) = (p.x.floor(), p.y.floor());
-        let (fx, fy) = (p.x - x0, p.y - y0);
-        let last = self.size as i64 - 1;
-        let column = [x0 as i64, x0 as i64 + 1].map(|x| x.clamp(0, last) as usize);
-        let row = [y0 as i64, y0 as i64 + 1].map(|y| y.clamp(0, last) as usize * self.size);
-        let taps = [
-            (row[0] + column[0], (1.0 - fx) * (1.0 - fy)),
-            (row[0] + column[1], fx * (1.0 - fy)),
-            (row[1] + column[0], (1.0 - fx) * fy),
-            (row[1] + column[1], fx * fy),
-        ];
         let (mut sum, mut weight) = (T::default(), 0.0);
-        for (texel, w) in taps {
+        for (texel, w) in self.around(uv) {
             if self.chart[texel] == chart {
                 sum = sum + map[texel] * w;
                 weight += w;

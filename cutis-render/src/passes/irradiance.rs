@@ -6,12 +6,12 @@
 
 use crate::passes::ambient::Ambient;
 use crate::passes::atlas::Atlas;
-use crate::passes::visibility::{faces, light_facing_surface, visible_fraction};
+use crate::passes::half_size::{HalfSize, Rays};
+use crate::passes::visibility::faces;
 use crate::prepare::{FilteredEnvironment, RhoDt};
 use crate::progress::Progress;
 use crate::sampling::random2;
-use crate::settings::Settings;
-use cutis_scene::{Bvh, LightSample, Object, Scene, SurfacePoint};
+use cutis_scene::{Object, SurfacePoint};
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 
@@ -20,24 +20,20 @@ const STREAM: u32 = 0x100;
 
 /// Everything the pass reads.
 pub struct IrradianceInputs<'a> {
-    /// The whole scene.
-    pub scene: &'a Scene,
-    /// Rays against it.
-    pub bvh: &'a Bvh,
-    /// How to draw.
-    pub settings: &'a Settings,
+    /// The scene and rays against it.
+    pub rays: Rays<'a>,
     /// The object whose texture is filled.
     pub object: &'a Object,
     /// Its unrolled surface.
     pub atlas: &'a Atlas,
+    /// What its lights see, at half the size.
+    pub half_size: &'a HalfSize<'a>,
     /// Its openness.
     pub ambient: &'a Ambient,
     /// The environment, if there is one.
     pub environment: Option<&'a FilteredEnvironment>,
     /// What its surface lets through.
     pub rho_dt: &'a RhoDt,
-    /// Distance beyond which nothing comes through, mm.
-    pub opaque_mm: f32,
 }
 
 /// The filled texture.
@@ -65,7 +61,7 @@ struct Row<'a> {
 /// Fills the texture.
 pub fn irradiance(inputs: &IrradianceInputs, progress: &dyn Progress) -> Irradiance {
     let size = inputs.atlas.size;
-    let lights = inputs.scene.lights.len();
+    let lights = inputs.rays.scene.lights.len();
     let mut filled = Irradiance {
         layers: vec![vec![Vec4::ZERO; size * size]; 1 + lights.saturating_sub(1).div_ceil(4)],
         visibility: vec![vec![0.0; size * size]; lights],
@@ -102,24 +98,26 @@ fn light_texel(inputs: &IrradianceInputs, x: usize, y: usize, row: &mut Row) {
     let material = &inputs.object.material;
     let normal = shading_normal(inputs.object, &point);
     let (rho_s, roughness) = (material.rho_s.at(point.uv), material.roughness.at(point.uv));
+    let chart = inputs.atlas.charts.chart[texel];
     let mut from_lights = Vec3::ZERO;
-    for (l, light) in inputs.scene.lights.iter().enumerate() {
+    for (l, light) in inputs.rays.scene.lights.iter().enumerate() {
         let towards = light.sample(point.position_mm);
-        let visible = visibility(inputs, l, &point, &towards, [x, y]);
+        let visible = visibility(inputs, l, &point, chart, [x, y]);
         // Relief may turn a normal away from a light that the smooth surface faces.
         let cos = normal.dot(towards.dir_to_light).max(0.0);
         let entered = towards.irradiance_w_per_m2 * (cos * visible * inputs.rho_dt.at(cos, roughness, rho_s));
         from_lights += entered;
         row.visibility[l][x] = visible;
         let (layer, component) = distance_slot(l);
-        row.layers[layer][x][component] = distance_mm(inputs, l, &point);
+        if !faces(&point, light) {
+            row.layers[layer][x][component] = inputs.half_size.distance_mm(l, point.uv, chart);
+        }
         if let Some(share) = row.shares.get_mut(l) {
             share[x] = entered.element_sum();
         }
     }
     let whole = from_lights.element_sum().max(f32::MIN_POSITIVE);
     row.shares.iter_mut().for_each(|share| share[x] /= whole);
-    let chart = inputs.atlas.charts.chart[texel];
     let from_environment =
         from_environment(inputs, &point, normal, chart) * inputs.rho_dt.mean(roughness, rho_s);
     let film = material.albedo.at(point.uv).max(Vec3::ZERO).powf(material.albedo_mix);
@@ -131,14 +129,18 @@ fn visibility(
     inputs: &IrradianceInputs,
     l: usize,
     point: &SurfacePoint,
-    towards: &LightSample,
+    chart: u32,
     [x, y]: [usize; 2],
 ) -> f32 {
-    if point.normal.dot(towards.dir_to_light) <= 0.0 || towards.irradiance_w_per_m2 == Vec3::ZERO {
+    let IrradianceInputs { rays, half_size, .. } = inputs;
+    let light = &rays.scene.lights[l];
+    if !faces(point, light) {
         return 0.0;
     }
-    let shift = random2(x as u32, y as u32, STREAM + l as u32, inputs.settings.seed);
-    visible_fraction(inputs.bvh, point, &inputs.scene.lights[l], inputs.settings.shadow_samples, shift)
+    half_size.visible(l, point.uv, chart).unwrap_or_else(|| {
+        let shift = random2(x as u32, y as u32, STREAM + l as u32, rays.settings.seed);
+        rays.visible(light, point, shift).unwrap_or(0.0)
+    })
 }
 
 fn from_environment(inputs: &IrradianceInputs, point: &SurfacePoint, normal: Vec3, chart: u32) -> Vec3 {
@@ -146,16 +148,6 @@ fn from_environment(inputs: &IrradianceInputs, point: &SurfacePoint, normal: Vec
     let (bent, open) = inputs.ambient.at(point.uv, chart, point.normal);
     // The relief turns the bent normal as it turns the smooth one.
     environment.irradiance((normal + bent - point.normal).normalize_or(normal)) * open
-}
-
-/// Distance d through the body towards a light, mm; 0 on the lit side, and never more than what is opaque anyway.
-fn distance_mm(inputs: &IrradianceInputs, l: usize, point: &SurfacePoint) -> f32 {
-    let light = &inputs.scene.lights[l];
-    if faces(point, light) {
-        return 0.0;
-    }
-    let there = light_facing_surface(inputs.scene, inputs.bvh, point, light);
-    there.map_or(inputs.opaque_mm, |there| there.corrected_mm.min(inputs.opaque_mm))
 }
 
 /// The normal with the material's relief.

@@ -4,6 +4,7 @@ pub mod ambient;
 pub mod atlas;
 pub mod blur;
 pub mod diffusion;
+pub mod half_size;
 pub mod irradiance;
 pub mod resolve;
 pub mod seams;

@@ -5,6 +5,7 @@ use crate::passes::ambient::Ambient;
 use crate::passes::atlas::Atlas;
 use crate::passes::blur::Fields;
 use crate::passes::diffusion::{DiffusionOperator, Separable};
+use crate::passes::half_size::{HalfSize, Rays};
 use crate::passes::irradiance::{IrradianceInputs, distance_slot, irradiance};
 use crate::passes::resolve::{ObjectMaps, Resolve, Sample};
 use crate::passes::seams::{DiffusionReport, diffusion_report};
@@ -157,19 +158,21 @@ impl ObjectPass<'_> {
         let atlas = clock.time("atlas", || Atlas::new(object, size));
         let stretch_mm = clock.time("stretch", || stretch_mm_per_texel(object, &atlas));
         let rays = if self.environment.is_some() { settings.ambient_samples } else { 0 };
+        let half_charts = clock.time("atlas", || atlas.charts.halved());
         let ambient = clock.time("ambient occlusion", || {
-            Ambient::new(object, &atlas, self.bvh, rays, settings.seed, progress)
+            Ambient::new(object, &atlas, half_charts.halved(), self.bvh, rays, settings.seed, progress)
         });
+        let opaque_mm = OPAQUE_DEVIATIONS * kernel.reach_mm();
+        let rays = Rays { scene: self.scene, bvh: self.bvh, settings, opaque_mm };
+        let half_size = clock.time("shadows", || HalfSize::new(rays, object, &atlas, &half_charts, progress));
         let inputs = IrradianceInputs {
-            scene: self.scene,
-            bvh: self.bvh,
-            settings,
+            rays,
             object,
             atlas: &atlas,
+            half_size: &half_size,
             ambient: &ambient,
             environment: self.environment,
             rho_dt: &rho_dt,
-            opaque_mm: OPAQUE_DEVIATIONS * kernel.reach_mm(),
         };
         let lit = clock.time("irradiance", || irradiance(&inputs, progress));
         let charts = Arc::new(atlas.charts.clone());

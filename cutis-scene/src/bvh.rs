@@ -48,7 +48,7 @@ impl Bvh {
         }
         let extent_mm = triangles.iter().fold(0.0f32, |m, t| m.max(t.v0.abs().max_element()));
         let mut time = std::time::Duration::ZERO;
-        let tree = build_cwbvh_from_tris(&triangles, BvhBuildParams::medium_build(), &mut time);
+        let tree = build_cwbvh_from_tris(&triangles, BvhBuildParams::slow_build(), &mut time);
         let order = |i: &u32| *i as usize;
         Self {
             triangles: tree.primitive_indices.iter().map(|i| triangles[order(i)]).collect(),

@@ -25,12 +25,11 @@ impl Camera {
         [right, right.cross(forward), forward]
     }
 
-    /// Unit direction through `ndc`: (-1, -1) is the lower left corner of the picture, (1, 1) the upper right.
-    pub fn dir_through(&self, ndc: Vec2, aspect_width_over_height: f32) -> Vec3 {
+    /// The rays through a picture of this shape.
+    pub fn rays(&self, aspect_width_over_height: f32) -> CameraRays {
         let [right, up, forward] = self.axes();
         let half_height = (0.5 * self.vertical_fov_rad).tan();
-        let aside = right * (ndc.x * half_height * aspect_width_over_height) + up * (ndc.y * half_height);
-        (forward + aside).normalize()
+        CameraRays { forward, right: right * (half_height * aspect_width_over_height), up: up * half_height }
     }
 
     /// Camera that sees the whole box from a direction, with a little air around it.
@@ -46,5 +45,20 @@ impl Camera {
             vertical_fov_rad,
             exposure_ev: 0.0,
         }
+    }
+}
+
+/// The rays of a camera through its picture.
+#[derive(Debug, Clone, Copy)]
+pub struct CameraRays {
+    forward: Vec3,
+    right: Vec3,
+    up: Vec3,
+}
+
+impl CameraRays {
+    /// Unit direction through `ndc`: (-1, -1) is the lower left corner of the picture, (1, 1) the upper right.
+    pub fn dir_through(&self, ndc: Vec2) -> Vec3 {
+        (self.forward + self.right * ndc.x + self.up * ndc.y).normalize()
     }
 }

@@ -23,7 +23,7 @@ pub mod topology;
 mod scene;
 
 pub use bvh::{Bvh, Hit};
-pub use camera::Camera;
+pub use camera::{Camera, CameraRays};
 pub use charts::Charts;
 pub use environment::Environment;
 pub use error::SceneError;

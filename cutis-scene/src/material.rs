@@ -103,6 +103,29 @@ impl ColourMap {
     }
 }
 
+impl Material {
+    /// What the absorbing film leaves of light that falls in: `albedo^albedo_mix`.
+    pub fn film_inwards(&self, uv: Vec2) -> Vec3 {
+        power(self.albedo.at(uv), self.albedo_mix)
+    }
+
+    /// What it leaves of light on its way out: `albedo^(1 - albedo_mix)`.
+    pub fn film_outwards(&self, uv: Vec2) -> Vec3 {
+        power(self.albedo.at(uv), 1.0 - self.albedo_mix)
+    }
+}
+
+/// `colour^exponent`, quick for the exponents that are common.
+fn power(colour: Vec3, exponent: f32) -> Vec3 {
+    let colour = colour.max(Vec3::ZERO);
+    match exponent {
+        0.0 => Vec3::ONE,
+        0.5 => colour.map(f32::sqrt),
+        1.0 => colour,
+        _ => colour.powf(exponent),
+    }
+}
+
 impl ScalarMap {
     /// The same value everywhere.
     pub fn constant(value: f32) -> Self {

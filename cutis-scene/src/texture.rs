@@ -55,39 +55,63 @@ impl Texture {
     pub fn texel(&self, x: u32, y: u32) -> Vec4 {
         let index = y as usize * self.width as usize + x as usize;
         match &self.texels {
-            Texels::Srgb8(t) => {
-                let [r, g, b, a] = t[index].map(usize::from);
-                Vec4::new(SRGB_TO_LINEAR[r], SRGB_TO_LINEAR[g], SRGB_TO_LINEAR[b], a as f32 / 255.0)
-            }
-            Texels::Linear8(t) => Vec4::from_array(t[index].map(|byte| f32::from(byte) / 255.0)),
+            Texels::Srgb8(t) => from_srgb8(t[index]),
+            Texels::Linear8(t) => from_linear8(t[index]),
             Texels::LinearF32(t) => Vec4::from_array(t[index]),
         }
     }
 
     /// Bilinear read at `uv`, repeating outside [0, 1). Decodes before it interpolates.
     pub fn sample(&self, uv: Vec2) -> Vec4 {
-        let x = uv.x.rem_euclid(1.0) * self.width as f32 - 0.5;
-        let y = uv.y.rem_euclid(1.0) * self.height as f32 - 0.5;
-        self.blend(x, y, |i| i.rem_euclid(i64::from(self.height)) as u32)
+        self.blend(uv - uv.floor(), |y| wrapped(y, self.height))
     }
 
     /// Bilinear read that repeats in u and holds the first and last row in v, as a latitude-longitude map needs.
     pub fn sample_latlong(&self, uv: Vec2) -> Vec4 {
-        let x = uv.x.rem_euclid(1.0) * self.width as f32 - 0.5;
-        let y = uv.y.clamp(0.0, 1.0) * self.height as f32 - 0.5;
-        self.blend(x, y, |i| i.clamp(0, i64::from(self.height) - 1) as u32)
+        let place = Vec2::new(uv.x - uv.x.floor(), uv.y.clamp(0.0, 1.0));
+        self.blend(place, |y| y.clamp(0, self.height as i32 - 1) as u32)
     }
 
-    fn blend(&self, x: f32, y: f32, row: impl Fn(i64) -> u32) -> Vec4 {
-        let (x0, y0) = (x.floor(), y.floor());
-        let (fx, fy) = (x - x0, y - y0);
-        let column = |i: i64| i.rem_euclid(i64::from(self.width)) as u32;
-        let (left, right) = (column(x0 as i64), column(x0 as i64 + 1));
-        let (top, bottom) = (row(y0 as i64), row(y0 as i64 + 1));
-        let upper = self.texel(left, top).lerp(self.texel(right, top), fx);
-        let lower = self.texel(left, bottom).lerp(self.texel(right, bottom), fx);
-        upper.lerp(lower, fy)
+    fn blend(&self, place: Vec2, row: impl Fn(i32) -> u32) -> Vec4 {
+        let p = place * Vec2::new(self.width as f32, self.height as f32) - 0.5;
+        let floor = p.floor();
+        let f = p - floor;
+        let (x, y) = (floor.x as i32, floor.y as i32);
+        let [left, right] = [x, x + 1].map(|x| wrapped(x, self.width) as usize);
+        let [top, bottom] = [y, y + 1].map(|y| row(y) as usize * self.width as usize);
+        let texels = [top + left, top + right, bottom + left, bottom + right];
+        let [a, b, c, d] = match &self.texels {
+            Texels::Srgb8(t) => texels.map(|i| from_srgb8(t[i])),
+            Texels::Linear8(t) => texels.map(|i| from_linear8(t[i])),
+            Texels::LinearF32(t) => texels.map(|i| Vec4::from_array(t[i])),
+        };
+        let (upper, lower) = (a + (b - a) * f.x, c + (d - c) * f.x);
+        upper + (lower - upper) * f.y
     }
+}
+
+/// `i` modulo `size`, for places at most one size outside.
+#[inline]
+fn wrapped(i: i32, size: u32) -> u32 {
+    let size = size as i32;
+    (if i < 0 {
+        i + size
+    } else if i >= size {
+        i - size
+    } else {
+        i
+    }) as u32
+}
+
+#[inline]
+fn from_srgb8([r, g, b, a]: [u8; 4]) -> Vec4 {
+    let linear = |code: u8| SRGB_TO_LINEAR[usize::from(code)];
+    Vec4::new(linear(r), linear(g), linear(b), f32::from(a) / 255.0)
+}
+
+#[inline]
+fn from_linear8(texel: [u8; 4]) -> Vec4 {
+    Vec4::from_array(texel.map(f32::from)) / 255.0
 }
 
 /// The sRGB transfer function of IEC 61966-2-1, encoded to linear, for all 256 codes.

@@ -6,7 +6,7 @@
 //! exactly on a code, black and white among them, stay on it. The pattern depends on the place in the picture alone.
 
 use super::{Picture, linear_to_srgb};
-use ::png::{BitDepth, ColorType, Encoder, EncodingError, SrgbRenderingIntent};
+use ::png::{BitDepth, ColorType, Compression, Encoder, EncodingError, SrgbRenderingIntent};
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
 use std::io::Write;
@@ -45,6 +45,8 @@ pub(super) fn write_picture(to: impl Write, picture: &Picture, depth: Depth) -> 
 /// Writes plain values.
 pub(super) fn write_raster(to: impl Write, raster: &Raster, depth: Depth) -> Result<(), EncodingError> {
     let mut encoder = Encoder::new(to, raster.width, raster.height);
+    // A tenth larger than the default makes it, in a fifth of the time.
+    encoder.set_compression(Compression::Fast);
     encoder.set_color(match raster.channels {
         1 => ColorType::Grayscale,
         3 => ColorType::Rgb,

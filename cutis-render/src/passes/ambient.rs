@@ -3,7 +3,8 @@
 //! Kept in a texture a quarter as wide as the irradiance: occlusion varies slowly, and the smoothing over 4 × 4 texels
 //! that gathers the rays of all of them would blur it anyway.
 
-use crate::passes::atlas::{Atlas, ChartMap, NO_CHART};
+use crate::passes::atlas::{Atlas, ChartMap};
+use crate::passes::smooth::smoothed;
 use crate::progress::Progress;
 use crate::sampling::{cosine_hemisphere, r2_point, random2};
 use cutis_scene::{Bvh, Object, SurfacePoint};
@@ -12,8 +13,8 @@ use rayon::prelude::*;
 
 /// Stream of random numbers this pass draws from.
 const STREAM: u32 = 0xA0;
-/// Texels on either side that the smoothing takes in.
-const SMOOTHING: usize = 2;
+/// Weights of a square of 4 × 4 texels around a texel: those on its edge count half.
+const FOUR_BY_FOUR: [f32; 3] = [1.0, 1.0, 0.5];
 
 /// Openness of the surface.
 pub struct Ambient {
@@ -45,7 +46,7 @@ impl Ambient {
             }
             progress.advance(1);
         });
-        let map = smoothed(&charts, &raw);
+        let map = smoothed(&charts, &raw, FOUR_BY_FOUR);
         Self { charts, map }
     }
 
@@ -77,27 +78,4 @@ fn openness(bvh: &Bvh, point: &SurfacePoint, samples: u32, first: u32, shift: Ve
         }
     }
     open / samples as f32
-}
-
-/// Mean over a square of 4 × 4 texels around each, those on its edge by half, as far as they belong to the same chart.
-fn smoothed(charts: &ChartMap, map: &[Vec4]) -> Vec<Vec4> {
-    let size = charts.size;
-    let mean = |i: usize| {
-        let chart = charts.chart[i];
-        if chart == NO_CHART {
-            return Vec4::ZERO;
-        }
-        let span = |c: usize| c.saturating_sub(SMOOTHING)..(c + SMOOTHING + 1).min(size);
-        let share = |a: usize, b: usize| if a.abs_diff(b) == SMOOTHING { 0.5 } else { 1.0 };
-        let (mut sum, mut weight) = (Vec4::ZERO, 0.0);
-        for (y, x) in span(i / size).flat_map(|y| span(i % size).map(move |x| (y, x))) {
-            if charts.chart[y * size + x] == chart {
-                let share = share(y, i / size) * share(x, i % size);
-                sum += map[y * size + x] * share;
-                weight += share;
-            }
-        }
-        sum / weight
-    };
-    (0..size * size).into_par_iter().map(mean).collect()
 }

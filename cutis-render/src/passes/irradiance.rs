@@ -120,7 +120,7 @@ fn light_texel(inputs: &IrradianceInputs, x: usize, y: usize, row: &mut Row) {
     row.shares.iter_mut().for_each(|share| share[x] /= whole);
     let from_environment =
         from_environment(inputs, &point, normal, chart) * inputs.rho_dt.mean(roughness, rho_s);
-    let film = material.albedo.at(point.uv).max(Vec3::ZERO).powf(material.albedo_mix);
+    let film = material.film_inwards(point.uv);
     row.layers[0][x] = ((from_lights + from_environment) * film).extend(row.layers[0][x].w);
 }
 

@@ -1,38 +1,16 @@
 //! The final pass: from blurred irradiance to radiance at every pixel
 //! (d'Eon, Luebke & Enderton 2007, section 5.4, "Render final image").
 
-use crate::passes::ambient::Ambient;
-use crate::passes::atlas::Atlas;
-use crate::passes::diffusion::Diffused;
 use crate::passes::irradiance::{distance_slot, shading_normal};
+use crate::passes::object_maps::ObjectMaps;
 use crate::passes::specular::Shine;
-use crate::passes::transmission::{slab_weights, transmitted};
-use crate::passes::visibility::{LightFacing, faces, light_facing_surface};
-use crate::prepare::{FilteredEnvironment, Kernel, RhoDt};
+use crate::passes::transmission::Transmission;
+use crate::passes::visibility::faces;
+use crate::prepare::FilteredEnvironment;
 use crate::settings::Aov;
 use cutis_scene::{Bvh, Hit, Object, Scene, SurfacePoint};
-use glam::{Vec2, Vec3, Vec4};
+use glam::{Vec3, Vec4};
 use std::f32::consts::PI;
-
-/// One object's textures and tables.
-pub struct ObjectMaps {
-    /// Its unrolled surface.
-    pub atlas: Atlas,
-    /// Millimetres per texel along u and v.
-    pub stretch_mm: Vec<Vec2>,
-    /// Its openness.
-    pub ambient: Ambient,
-    /// Light under its surface.
-    pub diffused: Diffused,
-    /// Fraction of each light that is seen.
-    pub visibility: Vec<Vec<f32>>,
-    /// Share of each light in the irradiance; empty for a single light.
-    pub shares: Vec<Vec<f32>>,
-    /// Its diffusion kernel.
-    pub kernel: Kernel,
-    /// What its surface lets through.
-    pub rho_dt: RhoDt,
-}
 
 /// What the final pass reads.
 pub struct Resolve<'a> {
@@ -44,6 +22,8 @@ pub struct Resolve<'a> {
     pub environment: Option<&'a FilteredEnvironment>,
     /// Textures and tables of each object.
     pub maps: &'a [ObjectMaps],
+    /// Light that has come through each of them.
+    pub transmission: &'a [Transmission],
     /// Layers wanted beside the radiance.
     pub aovs: &'a [Aov],
 }
@@ -68,6 +48,7 @@ struct Parts {
 struct Place<'a> {
     object: &'a Object,
     maps: &'a ObjectMaps,
+    transmission: &'a Transmission,
     point: SurfacePoint,
     normal: Vec3,
     chart: u32,
@@ -102,7 +83,8 @@ impl Resolve<'_> {
         let point = object.surface_point(hit.triangle, hit.b1, hit.b2);
         let normal = towards_eye(shading_normal(object, &point), -dir);
         let chart = object.charts.of_triangle[hit.triangle as usize];
-        Place { object, maps: &self.maps[hit.object as usize], point, normal, chart }
+        let o = hit.object as usize;
+        Place { object, maps: &self.maps[o], transmission: &self.transmission[o], point, normal, chart }
     }
 
     /// The sums of the paper's final pass.
@@ -118,12 +100,12 @@ impl Resolve<'_> {
         };
         let local = place.maps.diffused.weighted_sum(&place.maps.kernel.weights, uv, place.chart);
         // On the way out: the film once more, rho_dt towards the eye, and the even spread of exitance over directions.
-        let film = material.albedo.at(uv).max(Vec3::ZERO).powf(1.0 - material.albedo_mix);
+        let film = material.film_outwards(uv);
         let cos_eye = place.normal.dot(dir_to_eye);
         let leaving = film * (place.maps.rho_dt.at(cos_eye, shine.roughness, shine.rho_s) / PI);
         Parts {
             diffuse: local * leaving,
-            transmission: self.through_the_body(place) * leaving,
+            transmission: place.transmission.at(place.maps, uv, place.chart) * leaving,
             specular: self.specular(place, &shine),
         }
     }
@@ -144,48 +126,6 @@ impl Resolve<'_> {
         sum
     }
 
-    fn through_the_body(&self, place: &Place) -> Vec3 {
-        let Place { maps, point, chart, .. } = place;
-        let mut sum = Vec3::ZERO;
-        for (l, light) in self.scene.lights.iter().enumerate() {
-            if faces(point, light) {
-                continue;
-            }
-            let Some(slab) = slab_weights(&maps.kernel, &maps.diffused, l, point.uv, *chart) else {
-                continue;
-            };
-            let Some(there) = light_facing_surface(self.scene, self.bvh, point, light) else { continue };
-            let share = self.share(l, &there);
-            if share > 0.0 {
-                let apart_mm = self.apart_mm(place, &there);
-                let lit = &self.maps[there.object].diffused;
-                sum += transmitted(&maps.kernel, &slab, apart_mm, lit, &there) * share;
-            }
-        }
-        sum
-    }
-
-    /// Share of a light in what falls on its light-facing side, so that light counted once is not counted again.
-    fn share(&self, l: usize, there: &LightFacing) -> f32 {
-        let maps = &self.maps[there.object];
-        match maps.shares.get(l) {
-            Some(shares) => maps.atlas.charts.sample(shares, there.uv, there.chart).unwrap_or(0.0),
-            None => 1.0,
-        }
-    }
-
-    /// Distance along the surface to the light-facing place, mm. Within a chart the texture tells. Between charts no blur
-    /// has brought its light here if it lies on the other side of a thin part (opposite normals: infinitely far); around
-    /// an edge (like normals) it is a neighbour beyond the seam, as far away as it looks.
-    fn apart_mm(&self, place: &Place, there: &LightFacing) -> f32 {
-        if std::ptr::eq(place.maps, &self.maps[there.object]) && place.chart == there.chart {
-            return along_surface_mm(place.maps, place.point.uv, there.uv);
-        }
-        let opposite = (-there.normal.dot(place.point.normal)).clamp(0.0, 1.0);
-        // 1e-6 keeps the quotient finite; a micrometre over it is a metre.
-        there.distance_mm / (1.0 - opposite).max(1e-6)
-    }
-
     fn layer(&self, aov: Aov, place: &Place, parts: &Parts) -> Vec4 {
         let (maps, uv) = (place.maps, place.point.uv);
         let read = |level: usize| {
@@ -195,7 +135,7 @@ impl Resolve<'_> {
         match aov {
             Aov::Irradiance => read(0),
             Aov::Blur(i) => read(usize::from(i) + 1),
-            Aov::Stretch => stretch_at(maps, uv).extend(0.0).extend(1.0),
+            Aov::Stretch => maps.stretch_at(uv).extend(0.0).extend(1.0),
             Aov::Thickness => self.distances(place),
             Aov::Normal => place.normal.extend(1.0),
             Aov::Albedo => place.object.material.albedo.at(uv).extend(1.0),
@@ -221,16 +161,4 @@ fn towards_eye(normal: Vec3, dir_to_eye: Vec3) -> Vec3 {
     let cos = normal.dot(dir_to_eye);
     // A hair above 0 keeps the half vector and rho_dt defined.
     if cos >= 1e-3 { normal } else { (normal + dir_to_eye * (1e-3 - cos)).normalize_or(dir_to_eye) }
-}
-
-/// Texture distance of two places of one chart in millimetres, by the mean of the stretch at both.
-fn along_surface_mm(maps: &ObjectMaps, a: Vec2, b: Vec2) -> f32 {
-    let texels = (a - b) * maps.atlas.size as f32;
-    (texels * 0.5 * (stretch_at(maps, a) + stretch_at(maps, b))).length()
-}
-
-fn stretch_at(maps: &ObjectMaps, uv: Vec2) -> Vec2 {
-    let size = maps.atlas.size;
-    let texel = (uv * size as f32).clamp(Vec2::ZERO, Vec2::splat(size as f32 - 1.0));
-    maps.stretch_mm[texel.y as usize * size + texel.x as usize]
 }

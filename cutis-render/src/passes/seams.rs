@@ -1,7 +1,7 @@
 //! How good the diffusion is: energy kept, and light that does not match across seams.
 
 use crate::passes::diffusion::Diffused;
-use crate::passes::resolve::ObjectMaps;
+use crate::passes::object_maps::ObjectMaps;
 use cutis_scene::Object;
 use cutis_scene::charts::Seam;
 use glam::{Vec2, Vec3};

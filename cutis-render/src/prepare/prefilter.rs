@@ -73,12 +73,13 @@ fn coarse_rays(environment: &Environment) -> Vec<Ray> {
             for s in 0..per_cell_x * per_cell_y {
                 let within = Vec2::new((s % per_cell_x) as f32 + 0.5, (s / per_cell_x) as f32 + 0.5);
                 let uv = (cell + within / Vec2::new(per_cell_x as f32, per_cell_y as f32)) / size;
-                radiance += environment.radiance(environment.dir(uv));
+                radiance += environment.map.sample_latlong(uv).truncate();
             }
             let dir = environment.dir((cell + 0.5) / size);
             let [top, bottom] = [cell.y, cell.y + 1.0].map(|y| (y / size.y * PI).cos());
             let solid_angle_sr = (top - bottom) * TAU / size.x;
-            Ray { dir, radiance: radiance / (per_cell_x * per_cell_y) as f32, solid_angle_sr }
+            let mean = radiance / (per_cell_x * per_cell_y) as f32;
+            Ray { dir, radiance: mean * environment.radiance_scale, solid_angle_sr }
         })
         .collect()
 }
@@ -97,16 +98,38 @@ fn filter(frame: &Environment, rays: &[Ray], lobe: impl Fn(f32) -> f32 + Sync) -
 
 /// The weighted mean over the lobe of roughness `m` around every kept direction.
 fn normalised(frame: &Environment, rays: &[Ray], m: f32) -> Texture {
+    let lobe = LobeTable::new(m);
     let texels = targets(frame)
         .map(|dir| {
             let (sum, weights) = rays.iter().fold((Vec3::ZERO, 0.0), |(sum, weights), ray| {
-                let weight = mirror_lobe(ray.dir.dot(dir), m) * ray.solid_angle_sr;
+                let weight = lobe.at(ray.dir.dot(dir)) * ray.solid_angle_sr;
                 (sum + ray.radiance * weight, weights + weight)
             });
             (sum / weights.max(f32::MIN_POSITIVE)).extend(1.0).to_array()
         })
         .collect();
     Texture::new(TARGET[0], TARGET[1], Texels::LinearF32(texels))
+}
+
+/// A lobe by its cosine: there are ten million values to be had for every roughness.
+struct LobeTable(Vec<f32>);
+
+impl LobeTable {
+    /// Steps of the cosine from 0 to 1; the narrowest lobe has fallen by half after 20 of them.
+    const STEPS: usize = 2048;
+
+    fn new(m: f32) -> Self {
+        Self((0..=Self::STEPS).map(|i| mirror_lobe(i as f32 / Self::STEPS as f32, m)).collect())
+    }
+
+    fn at(&self, cos: f32) -> f32 {
+        let x = cos * Self::STEPS as f32;
+        if x <= 0.0 {
+            return 0.0;
+        }
+        let i = (x as usize).min(Self::STEPS - 1);
+        self.0[i] + (self.0[i + 1] - self.0[i]) * (x - i as f32)
+    }
 }
 
 /// Shape of the lobe with eye and normal along the mirror direction: D(H) cos_l / (V·H)², H halfway.

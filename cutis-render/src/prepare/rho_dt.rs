@@ -9,6 +9,7 @@
 use crate::sampling::beckmann_half_vector;
 use crate::specular_brdf::{MIN_ROUGHNESS, fresnel_schlick};
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
 
 /// Entries along the cosine. The albedo is smooth in sqrt(cos), which is what is sampled evenly.
 const COSINES: usize = 64;
@@ -27,9 +28,12 @@ pub struct RhoDt {
 impl RhoDt {
     /// Integrates the lobe for reflectance `f0` at normal incidence.
     pub fn new(f0: f32) -> Self {
-        let albedo: Vec<f32> = (0..ROUGHNESSES * COSINES)
-            .map(|i| directional_albedo(cosine_of(i % COSINES), roughness_of(i / COSINES), f0))
-            .collect();
+        let row = |r: usize| {
+            let halves = half_vectors(roughness_of(r));
+            (0..COSINES).map(|c| directional_albedo(cosine_of(c), &halves, f0)).collect::<Vec<f32>>()
+        };
+        let rows: Vec<Vec<f32>> = (0..ROUGHNESSES).into_par_iter().map(row).collect();
+        let albedo = rows.concat();
         let mean_albedo =
             (0..ROUGHNESSES).map(|r| mean_over_hemisphere(&albedo[r * COSINES..][..COSINES])).collect();
         Self { albedo, mean_albedo }
@@ -76,20 +80,24 @@ fn roughness_row(roughness: f32) -> (usize, f32) {
     (row, y - row as f32)
 }
 
-fn directional_albedo(cos: f32, roughness: f32, f0: f32) -> f32 {
+/// The nodes of the integral.
+fn half_vectors(roughness: f32) -> Vec<Vec3> {
+    let node = |i: u32| Vec2::new((i % NODES) as f32 + 0.5, (i / NODES) as f32 + 0.5) / NODES as f32;
+    (0..NODES * NODES).map(|i| beckmann_half_vector(node(i), roughness)).collect()
+}
+
+fn directional_albedo(cos: f32, half_vectors: &[Vec3], f0: f32) -> f32 {
     let cos = cos.max(1e-4); // the limit at grazing; exactly 0 has no plane of incidence
     let dir_to_eye = Vec3::new((1.0 - cos * cos).max(0.0).sqrt(), 0.0, cos);
     let mut sum = 0.0f64;
-    for i in 0..NODES * NODES {
-        let square = Vec2::new((i % NODES) as f32 + 0.5, (i / NODES) as f32 + 0.5) / NODES as f32;
-        let half = beckmann_half_vector(square, roughness);
-        let cos_difference = dir_to_eye.dot(half);
+    for half in half_vectors {
+        let cos_difference = dir_to_eye.dot(*half);
         let cos_light = 2.0 * cos_difference * half.z - dir_to_eye.z;
         if cos_difference > 0.0 && cos_light > 0.0 {
             sum += f64::from(fresnel_schlick(cos_difference, f0) * cos_light / (cos_difference * half.z));
         }
     }
-    (sum / f64::from(NODES * NODES)) as f32
+    (sum / half_vectors.len() as f64) as f32
 }
 
 /// 2 ∫ S(cos) cos dcos over the table's own cosines: with cos = x², 4 ∫ S x³ dx by the trapezoid rule in x.

@@ -7,9 +7,11 @@ use crate::passes::blur::Fields;
 use crate::passes::diffusion::{DiffusionOperator, Separable};
 use crate::passes::half_size::{HalfSize, Rays};
 use crate::passes::irradiance::{IrradianceInputs, distance_slot, irradiance};
-use crate::passes::resolve::{ObjectMaps, Resolve, Sample};
+use crate::passes::object_maps::ObjectMaps;
+use crate::passes::resolve::{Resolve, Sample};
 use crate::passes::seams::{DiffusionReport, diffusion_report};
 use crate::passes::stretch::stretch_mm_per_texel;
+use crate::passes::transmission::{Bodies, Transmission};
 use crate::prepare::kernel::kernel_of;
 use crate::prepare::{FilteredEnvironment, Kernel, RhoDt};
 use crate::sampling::random2;
@@ -24,8 +26,11 @@ use std::time::Instant;
 
 /// Stream of random numbers the camera draws from.
 const STREAM: u32 = 0xCA;
-/// Standard deviations of the widest Gaussian beyond which a body is opaque: exp(-5²/2) = 4e-6 comes through.
-const OPAQUE_DEVIATIONS: f32 = 5.0;
+/// Standard deviations of the widest Gaussian beyond which a body is opaque: exp(-5.5²/2) = 3e-7 comes through, which
+/// transmission takes for nothing.
+const OPAQUE_DEVIATIONS: f32 = 5.5;
+/// Pixels along a side of a tile.
+const TILE: usize = 16;
 /// Smallest irradiance texture of an object that is much smaller than the largest.
 const MIN_ATLAS: u32 = 64;
 
@@ -35,6 +40,7 @@ pub struct LitScene<'a> {
     bvh: Bvh,
     environment: Option<FilteredEnvironment>,
     maps: Vec<ObjectMaps>,
+    transmission: Vec<Transmission>,
     clock: Clock,
 }
 
@@ -72,14 +78,25 @@ impl<'a> LitScene<'a> {
             let pass = ObjectPass { scene, settings, bvh: &bvh, environment: environment.as_ref(), object };
             maps.push(pass.run(size as usize, &mut clock, progress)?);
         }
-        Ok(Self { scene, bvh, environment, maps, clock })
+        let bodies = Bodies { scene, bvh: &bvh, maps: &maps };
+        let transmission = clock.time("transmission", || {
+            scene.objects.iter().zip(&maps).map(|(o, maps)| bodies.transmission(o, maps, progress)).collect()
+        });
+        Ok(Self { scene, bvh, environment, maps, transmission, clock })
     }
 
     /// The final pass: a picture through the scene's camera.
     pub fn resolve(&mut self, settings: &Settings, progress: &dyn Progress) -> Frame {
         let aovs: &[Aov] = if settings.aov_space == AovSpace::Picture { &settings.aovs } else { &[] };
         let environment = self.environment.as_ref();
-        let resolve = Resolve { scene: self.scene, bvh: &self.bvh, environment, maps: &self.maps, aovs };
+        let resolve = Resolve {
+            scene: self.scene,
+            bvh: &self.bvh,
+            environment,
+            maps: &self.maps,
+            transmission: &self.transmission,
+            aovs,
+        };
         self.clock.time("resolve", || picture(&resolve, settings, progress))
     }
 
@@ -181,6 +198,7 @@ impl ObjectPass<'_> {
             clock.time("blur", || Separable.diffuse(charts, fields, &kernel.variances_mm2, progress));
         Ok(ObjectMaps {
             atlas,
+            half_charts,
             stretch_mm,
             ambient,
             diffused,
@@ -221,28 +239,39 @@ fn atlas_sizes(objects: &[Object], largest: u32) -> Vec<u32> {
     areas.iter().map(size).collect()
 }
 
+/// Draws the picture tile by tile: neighbours in both directions read the same texels.
 fn picture(resolve: &Resolve, settings: &Settings, progress: &dyn Progress) -> Frame {
     let (width, height) = (settings.width as usize, settings.height as usize);
-    progress.begin("resolve", u64::from(settings.height));
-    let rows: Vec<Vec<Sample>> = (0..height)
+    let columns = width.div_ceil(TILE);
+    let tiles = columns * height.div_ceil(TILE);
+    progress.begin("resolve", tiles as u64);
+    let drawn: Vec<Vec<Sample>> = (0..tiles)
         .into_par_iter()
-        .map(|y| {
-            let row = (0..width).map(|x| pixel(resolve, settings, x as u32, y as u32)).collect();
+        .map(|t| {
+            let (left, top) = (t % columns * TILE, t / columns * TILE);
+            let pixels = (top..(top + TILE).min(height))
+                .flat_map(|y| (left..(left + TILE).min(width)).map(move |x| (x as u32, y as u32)));
+            let samples = pixels.map(|(x, y)| pixel(resolve, settings, x, y)).collect();
             progress.advance(1);
-            row
+            samples
         })
         .collect();
+    let at = |i: usize| {
+        let (x, y) = (i % width, i / width);
+        let tile_width = TILE.min(width - x / TILE * TILE);
+        &drawn[y / TILE * columns + x / TILE][y % TILE * tile_width + x % TILE]
+    };
     let layer = |(l, &aov): (usize, &Aov)| Layer {
         name: aov.to_string(),
         width: settings.width,
         height: settings.height,
         channels: channels(aov),
-        pixels: rows.iter().flatten().map(|sample| sample.layers[l]).collect(),
+        pixels: (0..width * height).map(|i| at(i).layers[l]).collect(),
     };
     Frame {
         width: settings.width,
         height: settings.height,
-        pixels: rows.iter().flatten().map(|sample| sample.radiance).collect(),
+        pixels: (0..width * height).map(|i| at(i).radiance).collect(),
         layers: resolve.aovs.iter().enumerate().map(layer).collect(),
         ..Frame::default()
     }
@@ -253,13 +282,14 @@ fn pixel(resolve: &Resolve, settings: &Settings, x: u32, y: u32) -> Sample {
     let grid = (settings.samples_per_pixel as f32).sqrt().ceil() as u32;
     let camera = &resolve.scene.camera;
     let size = Vec2::new(settings.width as f32, settings.height as f32);
+    let rays = camera.rays(size.x / size.y);
     let mut sum = Sample { radiance: Vec4::ZERO, layers: vec![Vec4::ZERO; resolve.aovs.len()] };
     for i in 0..grid * grid {
         let jitter = random2(x, y, STREAM + (i << 8), settings.seed);
         let within = (Vec2::new((i % grid) as f32, (i / grid) as f32) + jitter) / grid as f32;
         let place = (Vec2::new(x as f32, y as f32) + within) / size;
         let ndc = Vec2::new(2.0 * place.x - 1.0, 1.0 - 2.0 * place.y);
-        let sample = resolve.sample(camera.position_mm, camera.dir_through(ndc, size.x / size.y));
+        let sample = resolve.sample(camera.position_mm, rays.dir_through(ndc));
         sum.radiance += sample.radiance;
         sum.layers.iter_mut().zip(&sample.layers).for_each(|(sum, value)| *sum += *value);
     }

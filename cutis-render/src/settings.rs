@@ -46,7 +46,7 @@ impl Default for Settings {
             irradiance_size: 2048,
             gaussians: 6,
             shadow_samples: 4,
-            ambient_samples: 8,
+            ambient_samples: 6,
             diffusion_report: false,
             seed: 1,
             aovs: Vec::new(),
@@ -136,6 +136,20 @@ impl Aov {
         let before = [Aov::Irradiance, Aov::Stretch];
         let after = [Aov::Thickness, Aov::Normal, Aov::Albedo, Aov::Specular, Aov::Transmission, Aov::Charts];
         before.into_iter().chain(blurs).chain(after).collect()
+    }
+}
+
+impl Aov {
+    /// Names of the layer's channels.
+    pub fn channels(self) -> Vec<String> {
+        let names: &[&str] = match self {
+            Self::Stretch => &["U", "V"],
+            Self::Thickness => &["light0", "light1", "light2", "light3"],
+            Self::Normal => &["X", "Y", "Z"],
+            Self::Charts => &["chart"],
+            _ => &["R", "G", "B"],
+        };
+        names.iter().map(|&name| name.to_owned()).collect()
     }
 }
 

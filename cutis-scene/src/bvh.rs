@@ -3,14 +3,14 @@
 use crate::Object;
 use glam::{Vec3, Vec3A};
 use obvhs::BvhBuildParams;
-use obvhs::cwbvh::CwBvh;
-use obvhs::cwbvh::builder::build_cwbvh_from_tris;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::builder::build_bvh2_from_tris;
 use obvhs::ray::{Ray, RayHit};
 use obvhs::triangle::Triangle;
 
 /// The acceleration structure of a scene.
 pub struct Bvh {
-    tree: CwBvh,
+    tree: Bvh2,
     /// Triangles in the tree's own order.
     triangles: Vec<Triangle>,
     /// Object and triangle of each entry above.
@@ -48,7 +48,7 @@ impl Bvh {
         }
         let extent_mm = triangles.iter().fold(0.0f32, |m, t| m.max(t.v0.abs().max_element()));
         let mut time = std::time::Duration::ZERO;
-        let tree = build_cwbvh_from_tris(&triangles, BvhBuildParams::slow_build(), &mut time);
+        let tree = build_bvh2_from_tris(&triangles, BvhBuildParams::slow_build(), &mut time);
         let order = |i: &u32| *i as usize;
         Self {
             triangles: tree.primitive_indices.iter().map(|i| triangles[order(i)]).collect(),

@@ -64,6 +64,12 @@ impl Object {
         }
     }
 
+    /// Texture coordinates at barycentric coordinates `(b1, b2)` of a triangle.
+    pub fn uv_at(&self, triangle: u32, b1: f32, b2: f32) -> Vec2 {
+        let [a, b, c] = self.mesh.corner_uvs(triangle as usize);
+        a * (1.0 - b1 - b2) + b * b1 + c * b2
+    }
+
     /// The surface at barycentric coordinates `(b1, b2)` of a triangle (weights of its second and third corner).
     ///
     /// The lifted position is where shadow rays should start: the flat facets of a coarse mesh would otherwise shade
@@ -91,6 +97,31 @@ impl Object {
             tangent: orthonormal_tangent(tangent, normal),
             uv,
         }
+    }
+}
+
+impl SurfacePoint {
+    /// The mean of several points that lie close together on one chart. `None` without any.
+    pub fn mean(points: impl Iterator<Item = Self>) -> Option<Self> {
+        let add = |a: Self, b: Self| Self {
+            position_mm: a.position_mm + b.position_mm,
+            lifted_position_mm: a.lifted_position_mm + b.lifted_position_mm,
+            flat_normal: a.flat_normal + b.flat_normal,
+            normal: a.normal + b.normal,
+            tangent: a.tangent + b.tangent,
+            uv: a.uv + b.uv,
+        };
+        let mut count = 0.0;
+        let sum = points.inspect(|_| count += 1.0).reduce(add)?;
+        let normal = sum.normal.normalize_or(Vec3::Y);
+        Some(Self {
+            position_mm: sum.position_mm / count,
+            lifted_position_mm: sum.lifted_position_mm / count,
+            flat_normal: sum.flat_normal.normalize_or(normal),
+            normal,
+            tangent: orthonormal_tangent(sum.tangent, normal),
+            uv: sum.uv / count,
+        })
     }
 }
 

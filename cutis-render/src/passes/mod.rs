@@ -7,6 +7,7 @@ pub mod diffusion;
 pub mod half_size;
 pub mod irradiance;
 pub mod object_maps;
+pub mod picture;
 pub mod resolve;
 pub mod seams;
 pub mod smooth;

@@ -55,12 +55,19 @@ struct Place<'a> {
 }
 
 impl Resolve<'_> {
-    /// What the eye sees along a ray.
-    pub fn sample(&self, eye_mm: Vec3, dir: Vec3) -> Sample {
-        match self.bvh.closest(eye_mm, dir, f32::INFINITY) {
-            Some(hit) => self.shade(&hit, dir),
-            None => Sample { radiance: self.background(dir), layers: vec![Vec4::ZERO; self.aovs.len()] },
-        }
+    /// What a ray sees that meets nothing.
+    pub fn miss(&self, dir: Vec3) -> Sample {
+        Sample { radiance: self.background(dir), layers: vec![Vec4::ZERO; self.aovs.len()] }
+    }
+
+    /// The object that was hit, and what is known of it.
+    pub fn object_of(&self, hit: &Hit) -> (&Object, &ObjectMaps) {
+        (&self.scene.objects[hit.object as usize], &self.maps[hit.object as usize])
+    }
+
+    /// The surface that was hit.
+    pub fn point(&self, hit: &Hit) -> SurfacePoint {
+        self.object_of(hit).0.surface_point(hit.triangle, hit.b1, hit.b2)
     }
 
     fn background(&self, dir: Vec3) -> Vec4 {
@@ -70,21 +77,21 @@ impl Resolve<'_> {
         }
     }
 
-    fn shade(&self, hit: &Hit, dir: Vec3) -> Sample {
-        let place = self.place(hit, dir);
+    /// What the eye sees of a point on the object and in the chart of `hit`, looking along `dir`.
+    pub fn shade(&self, hit: &Hit, point: &SurfacePoint, dir: Vec3) -> Sample {
+        let place = self.place(hit, point, dir);
         let parts = self.parts(&place, -dir);
         let radiance = (parts.diffuse + parts.transmission + parts.specular).extend(1.0);
         let layers = self.aovs.iter().map(|&aov| self.layer(aov, &place, &parts)).collect();
         Sample { radiance, layers }
     }
 
-    fn place(&self, hit: &Hit, dir: Vec3) -> Place<'_> {
-        let object = &self.scene.objects[hit.object as usize];
-        let point = object.surface_point(hit.triangle, hit.b1, hit.b2);
-        let normal = towards_eye(shading_normal(object, &point), -dir);
+    fn place(&self, hit: &Hit, point: &SurfacePoint, dir: Vec3) -> Place<'_> {
+        let (object, maps) = self.object_of(hit);
+        let normal = towards_eye(shading_normal(object, point), -dir);
         let chart = object.charts.of_triangle[hit.triangle as usize];
-        let o = hit.object as usize;
-        Place { object, maps: &self.maps[o], transmission: &self.transmission[o], point, normal, chart }
+        let transmission = &self.transmission[hit.object as usize];
+        Place { object, maps, transmission, point: *point, normal, chart }
     }
 
     /// The sums of the paper's final pass.

@@ -8,29 +8,24 @@ use crate::passes::diffusion::{DiffusionOperator, Separable};
 use crate::passes::half_size::{HalfSize, Rays};
 use crate::passes::irradiance::{IrradianceInputs, distance_slot, irradiance};
 use crate::passes::object_maps::ObjectMaps;
-use crate::passes::resolve::{Resolve, Sample};
+use crate::passes::picture::picture;
+use crate::passes::resolve::Resolve;
 use crate::passes::seams::{DiffusionReport, diffusion_report};
 use crate::passes::stretch::stretch_mm_per_texel;
 use crate::passes::transmission::{Bodies, Transmission};
 use crate::prepare::kernel::kernel_of;
 use crate::prepare::{FilteredEnvironment, Kernel, RhoDt};
-use crate::sampling::random2;
 use crate::settings::{Aov, AovSpace, Diffusion, Settings};
 use crate::{Progress, RenderError};
 use cutis_optics::{Dipole, Medium, presets};
 use cutis_scene::{Bvh, Material, Object, Scattering, Scene};
-use glam::{Vec2, Vec4};
-use rayon::prelude::*;
+use glam::Vec4;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Stream of random numbers the camera draws from.
-const STREAM: u32 = 0xCA;
 /// Standard deviations of the widest Gaussian beyond which a body is opaque: exp(-5.5²/2) = 3e-7 comes through, which
 /// transmission takes for nothing.
 const OPAQUE_DEVIATIONS: f32 = 5.5;
-/// Pixels along a side of a tile.
-const TILE: usize = 16;
 /// Smallest irradiance texture of an object that is much smaller than the largest.
 const MIN_ATLAS: u32 = 64;
 
@@ -147,7 +142,7 @@ impl<'a> LitScene<'a> {
             name: aov.to_string(),
             width: size as u32,
             height: size as u32,
-            channels: channels(aov),
+            channels: aov.channels(),
             pixels,
         })
     }
@@ -237,75 +232,6 @@ fn atlas_sizes(objects: &[Object], largest: u32) -> Vec<u32> {
         size
     };
     areas.iter().map(size).collect()
-}
-
-/// Draws the picture tile by tile: neighbours in both directions read the same texels.
-fn picture(resolve: &Resolve, settings: &Settings, progress: &dyn Progress) -> Frame {
-    let (width, height) = (settings.width as usize, settings.height as usize);
-    let columns = width.div_ceil(TILE);
-    let tiles = columns * height.div_ceil(TILE);
-    progress.begin("resolve", tiles as u64);
-    let drawn: Vec<Vec<Sample>> = (0..tiles)
-        .into_par_iter()
-        .map(|t| {
-            let (left, top) = (t % columns * TILE, t / columns * TILE);
-            let pixels = (top..(top + TILE).min(height))
-                .flat_map(|y| (left..(left + TILE).min(width)).map(move |x| (x as u32, y as u32)));
-            let samples = pixels.map(|(x, y)| pixel(resolve, settings, x, y)).collect();
-            progress.advance(1);
-            samples
-        })
-        .collect();
-    let at = |i: usize| {
-        let (x, y) = (i % width, i / width);
-        let tile_width = TILE.min(width - x / TILE * TILE);
-        &drawn[y / TILE * columns + x / TILE][y % TILE * tile_width + x % TILE]
-    };
-    let layer = |(l, &aov): (usize, &Aov)| Layer {
-        name: aov.to_string(),
-        width: settings.width,
-        height: settings.height,
-        channels: channels(aov),
-        pixels: (0..width * height).map(|i| at(i).layers[l]).collect(),
-    };
-    Frame {
-        width: settings.width,
-        height: settings.height,
-        pixels: (0..width * height).map(|i| at(i).radiance).collect(),
-        layers: resolve.aovs.iter().enumerate().map(layer).collect(),
-        ..Frame::default()
-    }
-}
-
-/// The mean of a jittered grid of samples over one pixel.
-fn pixel(resolve: &Resolve, settings: &Settings, x: u32, y: u32) -> Sample {
-    let grid = (settings.samples_per_pixel as f32).sqrt().ceil() as u32;
-    let camera = &resolve.scene.camera;
-    let size = Vec2::new(settings.width as f32, settings.height as f32);
-    let rays = camera.rays(size.x / size.y);
-    let mut sum = Sample { radiance: Vec4::ZERO, layers: vec![Vec4::ZERO; resolve.aovs.len()] };
-    for i in 0..grid * grid {
-        let jitter = random2(x, y, STREAM + (i << 8), settings.seed);
-        let within = (Vec2::new((i % grid) as f32, (i / grid) as f32) + jitter) / grid as f32;
-        let place = (Vec2::new(x as f32, y as f32) + within) / size;
-        let ndc = Vec2::new(2.0 * place.x - 1.0, 1.0 - 2.0 * place.y);
-        let sample = resolve.sample(camera.position_mm, rays.dir_through(ndc));
-        sum.radiance += sample.radiance;
-        sum.layers.iter_mut().zip(&sample.layers).for_each(|(sum, value)| *sum += *value);
-    }
-    let scale = 1.0 / (grid * grid) as f32;
-    Sample { radiance: sum.radiance * scale, layers: sum.layers.iter().map(|&l| l * scale).collect() }
-}
-
-fn channels(aov: Aov) -> Vec<String> {
-    let names: &[&str] = match aov {
-        Aov::Stretch => &["U", "V"],
-        Aov::Thickness => &["light0", "light1", "light2", "light3"],
-        Aov::Normal => &["X", "Y", "Z"],
-        Aov::Charts => &["chart"],
-        _ => &["R", "G", "B"],
-    };
-    names.iter().map(|&name| name.to_owned()).collect()
 }
 
 fn warnings(scene: &Scene) -> Vec<String> {

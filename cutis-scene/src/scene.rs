@@ -23,7 +23,12 @@ pub struct Scene {
 impl Scene {
     /// Smallest box around all objects, mm. `None` for an empty scene.
     pub fn bounds_mm(&self) -> Option<[Vec3; 2]> {
-        let boxes = self.objects.iter().filter_map(|object| object.mesh.bounds_mm());
-        boxes.reduce(|[lo, hi], [l, h]| [lo.min(l), hi.max(h)])
+        bounds_mm(&self.objects)
     }
+}
+
+/// Smallest box around some objects, mm. `None` if there is nothing in them.
+pub(crate) fn bounds_mm(objects: &[Object]) -> Option<[Vec3; 2]> {
+    let boxes = objects.iter().filter_map(|object| object.mesh.bounds_mm());
+    boxes.reduce(|[lo, hi], [l, h]| [lo.min(l), hi.max(h)])
 }

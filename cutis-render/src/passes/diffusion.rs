@@ -6,6 +6,7 @@
 use crate::passes::atlas::{ChartMap, NO_CHART};
 use crate::passes::blur::{Axis, Fields, Widening, blur};
 use crate::progress::Progress;
+use crate::settings::Diffusion;
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -50,6 +51,14 @@ impl Diffused {
     /// The kernel's sum of Gaussians at a place: radiant exitance under the surface, W/m².
     pub fn weighted_sum(&self, weights: &[Vec3], uv: Vec2, chart: u32) -> Vec3 {
         weights.iter().enumerate().map(|(i, &w)| w * self.sample(i + 1, 0, uv, chart).truncate()).sum()
+    }
+}
+
+/// The operator of a choice.
+pub fn operator(choice: Diffusion) -> &'static dyn DiffusionOperator {
+    match choice {
+        // Without diffusion the kernel is one Gaussian of no width, which any operator leaves as it is.
+        Diffusion::None | Diffusion::Separable => &Separable,
     }
 }
 

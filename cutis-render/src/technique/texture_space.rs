@@ -4,7 +4,7 @@ use crate::frame::{Frame, Layer, PassTime};
 use crate::passes::ambient::Ambient;
 use crate::passes::atlas::Atlas;
 use crate::passes::blur::Fields;
-use crate::passes::diffusion::{DiffusionOperator, Separable};
+use crate::passes::diffusion::operator;
 use crate::passes::half_size::{HalfSize, Rays};
 use crate::passes::irradiance::{IrradianceInputs, distance_slot, irradiance};
 use crate::passes::object_maps::ObjectMaps;
@@ -189,8 +189,9 @@ impl ObjectPass<'_> {
         let lit = clock.time("irradiance", || irradiance(&inputs, progress));
         let charts = Arc::new(atlas.charts.clone());
         let fields = Fields::new(lit.layers, stretch_mm.clone());
-        let diffused =
-            clock.time("blur", || Separable.diffuse(charts, fields, &kernel.variances_mm2, progress));
+        let diffused = clock.time("blur", || {
+            operator(settings.diffusion).diffuse(charts, fields, &kernel.variances_mm2, progress)
+        });
         Ok(ObjectMaps {
             atlas,
             half_charts,

@@ -6,6 +6,7 @@ use super::image::ColourSpace;
 use super::textures::Textures;
 use super::{CameraChoice, Parts, Piece, ReadOptions};
 use crate::error::one_line;
+use crate::scene::bounds_mm;
 use crate::studio::{STUDIO_BACKGROUND, studio_environment, studio_lights};
 use crate::{Camera, ColourMap, NormalMap, NormalSpace, Object, ScalarMap, Scene, SceneError};
 use glam::Vec3;
@@ -31,14 +32,12 @@ pub(super) fn finish(mut parts: Parts, file: &Path, options: &ReadOptions) -> Re
     for piece in parts.pieces {
         objects.push(to_object(piece, file, &mut warnings)?);
     }
-    let placeholder = Camera::framing([Vec3::ZERO; 2], Vec3::Z, DEFAULT_FOV_RAD);
-    let (lights, environment) = (parts.lights, parts.environment);
-    let mut scene =
-        Scene { objects, lights, environment, camera: placeholder, background: parts.background, warnings };
-    let Some(bounds_mm) = scene.bounds_mm() else {
+    let Some(bounds_mm) = bounds_mm(&objects) else {
         return Err(SceneError::new(file, "whole scene", "there is no mesh to look at"));
     };
-    scene.camera = camera(parts.camera, bounds_mm);
+    let camera = camera(parts.camera, bounds_mm);
+    let (lights, environment) = (parts.lights, parts.environment);
+    let mut scene = Scene { objects, lights, environment, camera, background: parts.background, warnings };
     warn_about_size(bounds_mm, &mut scene.warnings);
     light_if_dark(&mut scene, bounds_mm);
     scene.warnings = scene.warnings.iter().map(|text| one_line(text)).collect();

@@ -50,7 +50,7 @@ impl Patch {
         let atlas = Atlas::new(&object, size);
         let stretch_mm = stretch_mm_per_texel(&object, &atlas);
         let fields = Fields::new(vec![irradiance(&atlas.charts)], stretch_mm);
-        Self { size, charts: Arc::new(atlas.charts), fields, variances_mm2: skin_variances_mm2() }
+        Self { size, charts: atlas.charts, fields, variances_mm2: skin_variances_mm2() }
     }
 
     fn diffuse(&self, fields: Fields) -> Diffused {

@@ -1,7 +1,7 @@
 //! Sample patterns and the random numbers they are turned by. All are functions of the seed and of where they are
 //! used, never of a thread, so that a picture has the same bits on any number of cores.
 
-use glam::{Vec2, Vec3};
+use glam::{DVec2, Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_4, TAU};
 
 /// A hash of four numbers that passes for random: PCG4D (Jarzynski & Olano 2020, "Hash Functions for GPU Rendering",
@@ -34,8 +34,9 @@ fn unit_float(bits: u32) -> f32 {
 /// Point `index` of the two-dimensional R2 sequence (Roberts 2018: multiples of the plastic number's powers), shifted
 /// by `shift` and wrapped to the unit square.
 pub fn r2_point(index: u32, shift: Vec2) -> Vec2 {
-    const STEP: Vec2 = Vec2::new(0.754_877_7, 0.569_840_3);
-    (STEP * index as f32 + shift).fract()
+    // In f32 the multiples of late indices would lose the digits that matter.
+    const STEP: DVec2 = DVec2::new(0.754_877_666_246_693, 0.569_840_290_998_053_3);
+    ((STEP * f64::from(index)).fract().as_vec2() + shift).fract()
 }
 
 /// Unit square to unit disc, keeping areas (Shirley & Chiu 1997, concentric map).

@@ -3,7 +3,7 @@
 use cutis_render::passes::atlas::Atlas;
 use cutis_render::passes::half_size::{HalfSize, Rays};
 use cutis_render::technique::texture_space::LitScene;
-use cutis_render::{Settings, Silent};
+use cutis_render::{Frame, Settings, Silent};
 use cutis_scene::head::{HeadDetail, built_in};
 use cutis_scene::studio::{studio_environment, studio_lights};
 use cutis_scene::{Bvh, Camera, Light, Scene};
@@ -24,7 +24,7 @@ fn head_in_the_studio() -> Scene {
 
 /// The same light as a point, whose shadows are sharp: all or nothing.
 fn without_extent(light: &Light) -> Light {
-    let mut light = light.clone();
+    let mut light = *light;
     match &mut light {
         Light::Point { radius_mm, .. } | Light::Spot { radius_mm, .. } => *radius_mm = 0.0,
         Light::Directional { angular_radius_rad, .. } => *angular_radius_rad = 0.0,
@@ -47,7 +47,7 @@ fn neighbours_that_agree_about_a_shadow_are_right() {
             let Some(point) = atlas.surface_point(object, texel) else { continue };
             let Some(true_share) = rays.visible(light, &point, Vec2::ZERO) else { continue };
             asked += 1;
-            if let Some(share) = half_size.visible(l, point.uv, atlas.charts.chart[texel]) {
+            if let Some(share) = half_size.visible(l, point.uv, atlas.charts.chart[texel], false) {
                 answered += 1;
                 wrong += usize::from(share != true_share);
             }
@@ -77,3 +77,28 @@ fn seams_and_energy_are_no_worse_than_the_baseline() {
 const SEAM_ERROR_MEAN: f64 = 0.0785;
 /// The same, 99th percentile.
 const SEAM_ERROR_P99: f64 = 0.414;
+
+/// Mean and root mean square of the difference of two pictures, relative to the mean of the second.
+fn difference(a: &Frame, b: &Frame) -> [f32; 2] {
+    let mean = b.pixels.iter().map(|p| p.y).sum::<f32>();
+    let differences = a.pixels.iter().zip(&b.pixels).map(|(a, b)| a.y - b.y);
+    let count = b.pixels.len() as f32;
+    let squares = differences.clone().map(|d| d * d).sum::<f32>() / count;
+    [differences.sum::<f32>() / mean, squares.sqrt() / (mean / count)]
+}
+
+#[test]
+fn a_pixel_that_is_shaded_once_shows_what_many_samples_show() {
+    let mut scene = head_in_the_studio();
+    // Close enough that most pixels lie within a texel.
+    scene.camera.vertical_fov_rad = 0.1;
+    let mut settings =
+        Settings { width: 96, height: 96, irradiance_size: 256, samples_per_pixel: 4, ..Settings::default() };
+    let mut lit = LitScene::new(&scene, &settings, &Silent).expect("draws");
+    let few = lit.resolve(&settings, &Silent);
+    settings.samples_per_pixel = 64;
+    let many = lit.resolve(&settings, &Silent);
+    let [mean, rms] = difference(&few, &many);
+    eprintln!("4 samples against 64: mean {mean:+.5}, root mean square {rms:.5}");
+    assert!(mean.abs() < 1e-3 && rms < 0.02, "{mean} {rms}");
+}

@@ -104,6 +104,17 @@ impl ColourMap {
 }
 
 impl Material {
+    /// Width or height of the largest of its maps, texels; 0 without any.
+    pub fn largest_map(&self) -> u32 {
+        let maps = [
+            self.albedo.texture.as_ref(),
+            self.normal.as_ref().map(|map| &map.texture),
+            self.rho_s.texture.as_ref().map(|(map, _)| map),
+            self.roughness.texture.as_ref().map(|(map, _)| map),
+        ];
+        maps.into_iter().flatten().map(|map| map.width().max(map.height())).max().unwrap_or(0)
+    }
+
     /// What the absorbing film leaves of light that falls in: `albedo^albedo_mix`.
     pub fn film_inwards(&self, uv: Vec2) -> Vec3 {
         power(self.albedo.at(uv), self.albedo_mix)

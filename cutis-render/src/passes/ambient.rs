@@ -46,7 +46,7 @@ impl Ambient {
             }
             progress.advance(1);
         });
-        let map = smoothed(&charts, &raw, FOUR_BY_FOUR);
+        let map = smoothed(&charts, &raw, FOUR_BY_FOUR, 1);
         Self { charts, map }
     }
 

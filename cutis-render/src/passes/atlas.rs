@@ -9,6 +9,7 @@ use cutis_scene::{Object, SurfacePoint};
 use glam::Vec2;
 use rayon::prelude::*;
 use std::ops::{Add, Mul};
+use std::sync::Arc;
 
 /// Marks a texel that no chart covers.
 pub const NO_CHART: u32 = u32::MAX;
@@ -41,7 +42,7 @@ pub struct Atlas {
     /// Place of each texel on the mesh.
     pub surface: Vec<TexelSurface>,
     /// Chart of each texel.
-    pub charts: ChartMap,
+    pub charts: Arc<ChartMap>,
 }
 
 /// Which chart every texel of a square map belongs to.
@@ -73,7 +74,7 @@ impl Atlas {
             pad(object, size, &mut surface);
         }
         let chart = surface.par_iter().map(|s| chart_of(object, s)).collect();
-        Self { size, surface, charts: ChartMap::new(size, chart) }
+        Self { size, surface, charts: Arc::new(ChartMap::new(size, chart)) }
     }
 
     /// The surface under a texel, if a chart covers it.

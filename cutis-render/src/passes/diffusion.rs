@@ -175,7 +175,7 @@ impl State {
 }
 
 /// The texel size (the smaller of both directions) below which half of the surface lies, mm.
-fn median_texel_mm(charts: &ChartMap, stretch_mm: &[Vec2]) -> f32 {
+pub fn median_texel_mm(charts: &ChartMap, stretch_mm: &[Vec2]) -> f32 {
     // A few thousand texels are plenty for a median; an odd stride divides no texture size.
     let stride = (stretch_mm.len() / MEDIAN_TEXELS) | 1;
     let covered = charts.chart.iter().zip(stretch_mm).step_by(stride).filter(|(c, _)| **c != NO_CHART);

@@ -45,8 +45,8 @@ impl Rays<'_> {
     }
 
     /// Distance d through the body towards a light, mm; 0 on the lit side, and never more than what is opaque anyway.
-    fn distance_mm(&self, light: &Light, point: &SurfacePoint) -> f32 {
-        if faces(point, light) {
+    pub fn distance_mm(&self, light: &Light, point: &SurfacePoint) -> f32 {
+        if self.opaque_mm <= 0.0 || faces(point, light) {
             return 0.0;
         }
         let there = light_facing_surface(self.scene, self.bvh, point, light);
@@ -90,16 +90,33 @@ impl<'a> HalfSize<'a> {
         Self { charts, lights: lights.collect() }
     }
 
-    /// Whether the place is lit (1) or in shadow (0), if the four texels around it agree.
-    pub fn visible(&self, l: usize, uv: Vec2, chart: u32) -> Option<f32> {
-        let texels = self.charts.around(uv).map(|(texel, _)| texel);
-        let first = self.lights[l][texels[0]].x;
-        let agree = |&t: &usize| self.charts.chart[t] == chart && self.lights[l][t].x == first;
-        ((first == 0.0 || first == 1.0) && texels.iter().all(agree)).then_some(first)
+    /// Whether the place is lit (1) or in shadow (0), if the texels around it agree: four where shadows are sharp; sixteen
+    /// for a light with extent, a few of whose rays may all miss what hides a little of it.
+    pub fn visible(&self, l: usize, uv: Vec2, chart: u32, has_extent: bool) -> Option<f32> {
+        let [(first, _), .., (last, _)] = self.charts.around(uv);
+        let size = self.charts.size;
+        let margin = usize::from(has_extent);
+        let columns = (first % size).saturating_sub(margin)..(last % size + margin + 1).min(size);
+        let mut rows = (first / size).saturating_sub(margin)..(last / size + margin + 1).min(size);
+        let answer = self.lights[l][first].x;
+        let agree = |t: usize| self.charts.chart[t] == chart && self.lights[l][t].x == answer;
+        let all =
+            (answer == 0.0 || answer == 1.0) && rows.all(|y| columns.clone().all(|x| agree(y * size + x)));
+        all.then_some(answer)
     }
 
-    /// Distance through the body, mm; 0 where the chart has no texel.
-    pub fn distance_mm(&self, l: usize, uv: Vec2, chart: u32) -> f32 {
-        self.charts.sample(&self.lights[l], uv, chart).map_or(0.0, |seen| seen.y)
+    /// Distance through the body, mm: the mean of those texels around the place that face away as well. `None` if there
+    /// are none in its chart.
+    pub fn distance_mm(&self, l: usize, uv: Vec2, chart: u32) -> Option<f32> {
+        let (mut sum, mut weight) = (0.0, 0.0);
+        for (texel, w) in self.charts.around(uv) {
+            let seen = self.lights[l][texel];
+            if self.charts.chart[texel] == chart && seen.x == FACES_AWAY {
+                sum += seen.y * w;
+                weight += w;
+            }
+        }
+        // Below a thousandth the quotient would only magnify rounding.
+        (weight > 1e-3).then(|| sum / weight)
     }
 }

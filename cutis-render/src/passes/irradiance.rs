@@ -110,7 +110,8 @@ fn light_texel(inputs: &IrradianceInputs, x: usize, y: usize, row: &mut Row) {
         row.visibility[l][x] = visible;
         let (layer, component) = distance_slot(l);
         if !faces(&point, light) {
-            row.layers[layer][x][component] = inputs.half_size.distance_mm(l, point.uv, chart);
+            let near = inputs.half_size.distance_mm(l, point.uv, chart);
+            row.layers[layer][x][component] = near.unwrap_or_else(|| inputs.rays.distance_mm(light, &point));
         }
         if let Some(share) = row.shares.get_mut(l) {
             share[x] = entered.element_sum();
@@ -137,7 +138,7 @@ fn visibility(
     if !faces(point, light) {
         return 0.0;
     }
-    half_size.visible(l, point.uv, chart).unwrap_or_else(|| {
+    half_size.visible(l, point.uv, chart, light.has_extent()).unwrap_or_else(|| {
         let shift = random2(x as u32, y as u32, STREAM + l as u32, rays.settings.seed);
         rays.visible(light, point, shift).unwrap_or(0.0)
     })

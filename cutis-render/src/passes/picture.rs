@@ -17,7 +17,7 @@ use rayon::prelude::*;
 const STREAM: u32 = 0xCA;
 /// Pixels along a side of a tile.
 const TILE: usize = 16;
-/// Extent of a pixel on the surface, in texels of the irradiance, up to which it is shaded once.
+/// Extent of a pixel on the surface, in texels of the finest map it is drawn from, up to which it is shaded once.
 const SHARED_TEXELS: f32 = 1.5;
 
 /// Draws the picture tile by tile: neighbours in both directions read the same texels.
@@ -121,7 +121,7 @@ impl<'a> Lens<'a> {
         let first = seen.first()?.1?;
         let (object, maps) = self.resolve.object_of(&first);
         let chart = object.charts.of_triangle[first.triangle as usize];
-        let reach = SHARED_TEXELS / maps.atlas.size as f32;
+        let reach = SHARED_TEXELS / object.material.largest_map().max(maps.atlas.size as u32) as f32;
         let (mut lo, mut hi) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
         for (_, hit) in seen {
             let hit = (*hit)?;

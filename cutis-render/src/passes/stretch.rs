@@ -2,9 +2,10 @@
 //! (d'Eon, Luebke & Enderton 2007, section 5.1; the paper stores the reciprocal).
 //!
 //! The derivatives of a flat triangle are exact, where the paper takes screen-space differences; but they jump from one
-//! triangle to the next, which the surface that the mesh stands for does not. So the squared lengths of dX/du and dX/dv
-//! (the first fundamental form's E and G) are averaged at every vertex over the triangles around it, by area, and
-//! interpolated between.
+//! triangle to the next, which the surface that the mesh stands for does not. So texels per millimetre, squared, are
+//! averaged at every vertex over the triangles around it, and the squared stretch is interpolated between vertices.
+//! Triangles count by their areas on the surface and in the texture: slivers, whose derivatives are rounding, count for
+//! nothing.
 
 use crate::passes::atlas::{Atlas, NO_CHART, TexelSurface};
 use cutis_scene::Object;
@@ -35,14 +36,20 @@ fn squared_lengths_at_vertices_mm2(object: &Object) -> Vec<Vec2> {
     let mut sums = vec![(Vec2::ZERO, 0.0f32); mesh.positions_mm.len()];
     for (t, vertices) in mesh.triangles.iter().enumerate() {
         let Some([along_u, along_v]) = derivatives_mm(object, t) else { continue };
-        let area_mm2 = mesh.area_mm2(t);
+        let squares = Vec2::new(along_u.length_squared(), along_v.length_squared());
+        let [a, b, c] = mesh.corner_uvs(t);
+        let area = mesh.area_mm2(t) * (b - a).perp_dot(c - a).abs();
+        let share = area * squares.recip();
+        if !share.is_finite() {
+            continue;
+        }
         for &v in vertices {
             let (sum, weight) = &mut sums[v as usize];
-            *sum += area_mm2 * Vec2::new(along_u.length_squared(), along_v.length_squared());
-            *weight += area_mm2;
+            *sum += share;
+            *weight += area;
         }
     }
-    sums.into_iter().map(|(sum, weight)| sum / weight.max(f32::MIN_POSITIVE)).collect()
+    sums.into_iter().map(|(sum, weight)| weight / sum.max(Vec2::splat(f32::MIN_POSITIVE))).collect()
 }
 
 /// dX/du and dX/dv of a triangle, mm per unit of the texture. `None` if it has no area in the texture.
@@ -83,6 +90,23 @@ mod tests {
         let [along_u, along_v] = derivatives_mm(&bent(), 0).expect("has area");
         assert!((along_u - Vec3::new(3.0, 0.0, 0.0)).length() < 1e-6);
         assert!((along_v - Vec3::new(0.0, -2.0, 0.0)).length() < 1e-6);
+    }
+
+    #[test]
+    fn a_sliver_in_the_texture_does_no_harm_to_its_neighbours() {
+        let plain = bent();
+        let mut mesh = plain.mesh.clone();
+        // A large triangle in space, next to none in the texture.
+        mesh.positions_mm.push(Vec3::new(0.0, 9.0, 0.0));
+        mesh.uvs.push(Vec2::new(0.5, -1e-7));
+        mesh.normals.push(Vec3::Z);
+        mesh.tangents.push(glam::Vec4::X);
+        mesh.triangles.push([0, 1, 4]);
+        let spoiled = Object::new("spoiled", mesh, Material::default());
+        let [before, after] = [&plain, &spoiled].map(squared_lengths_at_vertices_mm2);
+        for (b, a) in before.iter().zip(&after) {
+            assert!((*b - *a).abs().max_element() < 1e-3 * b.max_element(), "{b} {a}");
+        }
     }
 
     #[test]

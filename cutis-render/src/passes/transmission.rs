@@ -12,7 +12,7 @@
 //! towards the light leaves the body jumps from one surface to another, the light that comes through does not.
 
 use crate::passes::atlas::NO_CHART;
-use crate::passes::diffusion::Diffused;
+use crate::passes::diffusion::{Diffused, median_texel_mm};
 use crate::passes::irradiance::distance_slot;
 use crate::passes::object_maps::ObjectMaps;
 use crate::passes::smooth::smoothed;
@@ -29,8 +29,10 @@ const FADE_DEVIATIONS: f32 = 6.0;
 /// Below a millionth of the light nothing shows, and a look-up can be saved.
 const VISIBLE: f32 = 1e-6;
 
-/// Binomial weights: a standard deviation of one texel of the half-size map.
+/// Binomial weights: a standard deviation of one step.
 const BINOMIAL: [f32; 3] = [6.0, 4.0, 1.0];
+/// Standard deviation of the smoothing, mm: less than light spreads on its way through anything but the thinnest parts.
+const SMOOTH_MM: f32 = 1.0;
 
 /// Light that has come through one object: radiant exitance under its surface, W/m², at half the size of the irradiance.
 pub struct Transmission {
@@ -72,7 +74,15 @@ impl Bodies<'_> {
             }
             progress.advance(1);
         });
-        Transmission { map: smoothed(charts, &map, BINOMIAL) }
+        let texel_mm = 2.0 * median_texel_mm(&maps.atlas.charts, &maps.stretch_mm);
+        // Each round with steps twice as long, until the variance is nearly reached.
+        let (mut step, mut variance_mm2) = (1, 0.0);
+        while variance_mm2 + 0.5 * (step as f32 * texel_mm).powi(2) < SMOOTH_MM * SMOOTH_MM {
+            map = smoothed(charts, &map, BINOMIAL, step);
+            variance_mm2 += (step as f32 * texel_mm).powi(2);
+            step *= 2;
+        }
+        Transmission { map }
     }
 
     /// Whether any light is behind a body that is not opaque there. Most places can be told from their distances.

@@ -115,7 +115,7 @@ fn normalised(frame: &Environment, rays: &[Ray], m: f32) -> Texture {
 struct LobeTable(Vec<f32>);
 
 impl LobeTable {
-    /// Steps of the cosine from 0 to 1; the narrowest lobe has fallen by half after 20 of them.
+    /// Steps of the cosine from 0 to 1; the narrowest lobe has fallen by half after 41 of them.
     const STEPS: usize = 2048;
 
     fn new(m: f32) -> Self {

@@ -169,10 +169,10 @@ impl ObjectPass<'_> {
         let rho_dt = clock.time("rho_dt", || RhoDt::new(object.material.f0));
         let atlas = clock.time("atlas", || Atlas::new(object, size));
         let stretch_mm = clock.time("stretch", || stretch_mm_per_texel(object, &atlas));
-        let rays = if self.environment.is_some() { settings.ambient_samples } else { 0 };
+        let samples = if self.environment.is_some() { settings.ambient_samples } else { 0 };
         let half_charts = clock.time("atlas", || atlas.charts.halved());
         let ambient = clock.time("ambient occlusion", || {
-            Ambient::new(object, &atlas, half_charts.halved(), self.bvh, rays, settings.seed, progress)
+            Ambient::new(object, &atlas, half_charts.halved(), self.bvh, samples, settings.seed, progress)
         });
         let opaque_mm = OPAQUE_DEVIATIONS * kernel.reach_mm();
         let rays = Rays { scene: self.scene, bvh: self.bvh, settings, opaque_mm };
@@ -187,7 +187,7 @@ impl ObjectPass<'_> {
             rho_dt: &rho_dt,
         };
         let lit = clock.time("irradiance", || irradiance(&inputs, progress));
-        let charts = Arc::new(atlas.charts.clone());
+        let charts = Arc::clone(&atlas.charts);
         let fields = Fields::new(lit.layers, stretch_mm.clone());
         let diffused = clock.time("blur", || {
             operator(settings.diffusion).diffuse(charts, fields, &kernel.variances_mm2, progress)
@@ -214,7 +214,7 @@ impl ObjectPass<'_> {
     }
 }
 
-/// Size of each object's texture: the largest object gets all of it, others by the square root of their area, in
+/// Size of each object's texture: the largest object gets all of it (rounded up so that it can be halved), others by the square root of their area, in
 /// powers of two below.
 fn atlas_sizes(objects: &[Object], largest: u32) -> Vec<u32> {
     let area = |object: &Object| {
@@ -222,6 +222,7 @@ fn atlas_sizes(objects: &[Object], largest: u32) -> Vec<u32> {
     };
     let areas: Vec<f64> = objects.iter().map(area).collect();
     let most = areas.iter().copied().fold(0.0, f64::max);
+    let largest = largest.next_multiple_of(8);
     let size = |area: &f64| {
         let mut size = largest;
         while size.is_multiple_of(2)

@@ -48,7 +48,7 @@ pub fn diffuse(
     let stretch_mm = stretch_mm_per_texel(object, &atlas);
     let lit = |i: usize| if atlas.charts.chart[i] == NO_CHART { Vec4::ZERO } else { map(i) };
     let fields = Fields::new(vec![(0..size * size).map(lit).collect()], stretch_mm);
-    let diffused = Separable.diffuse(Arc::new(atlas.charts.clone()), fields, variances_mm2, &Silent);
+    let diffused = Separable.diffuse(Arc::clone(&atlas.charts), fields, variances_mm2, &Silent);
     (atlas, diffused)
 }
 

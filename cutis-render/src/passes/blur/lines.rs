@@ -7,7 +7,8 @@ use crate::passes::tap::TAPS;
 use glam::Vec2;
 use wide::f32x8;
 
-/// Largest deviation of a texel's size from a straight line between those at the ends of its block: 2 % in variance.
+/// Largest root mean square deviation of texel sizes from a straight line between those at the ends of their block: 2 %
+/// in variance.
 const MAX_BEND: f32 = 0.01;
 /// Largest ratio of texel sizes at the ends of a block. Between, two Gaussians of different width are mixed.
 const MAX_RATIO: f32 = 1.25;
@@ -95,7 +96,6 @@ impl<const V: bool> Lines<'_, V> {
         let mut bend = Vec2::ZERO;
         for (i, &stretch) in self.stretch_mm[first..first + count].iter().enumerate() {
             let off = (stretch - (start + step * i as f32)).abs();
-            // `Vec2::max` would take care of NaN one by one.
             bend += off * off;
         }
         let (bend, start_mm, end_mm) = if V { (bend.y, start.y, end.y) } else { (bend.x, start.x, end.x) };

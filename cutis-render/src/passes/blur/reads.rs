@@ -64,8 +64,9 @@ impl Reads {
     /// Taps at these distances in texels on the near and the far side, interpolated linearly or cubically.
     #[inline(always)]
     pub(super) fn at(near: [f32; SIDE], far: [f32; SIDE], cubic: bool, stride: usize) -> Self {
+        // Places so far apart, where texels shrink quickly, are read well enough by linear interpolation.
+        let cubic = cubic && near[SIDE - 1].max(far[SIDE - 1]) < (FARTHEST - 2) as f32;
         let places = f32x8::from([near[0], near[1], near[2], 0.0, far[0], far[1], far[2], 0.0]);
-        let places = places.fast_min(f32x8::splat(if cubic { FARTHEST as f32 - 2.0 } else { f32::MAX }));
         let [centre_weight, w1, w2, w3] = TAPS.weights;
         let tap_weights = f32x8::from([w1, w2, w3, 0.0, w1, w2, w3, 0.0]);
         let floor = places.floor();

@@ -13,6 +13,7 @@ mod medium;
 pub mod presets;
 mod profile;
 mod rgb_gaussian_sum;
+pub mod simulate;
 
 pub use dipole::{DiffusionValidity, Dipole};
 pub use fit::{Fit, FitError, FitMethod, RgbFit, fit, fit_rgb, relative_rms_power_error, rgb_kernel};

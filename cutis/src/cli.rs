@@ -38,6 +38,8 @@ pub struct Cli {
 pub enum Command {
     /// Render a picture of a scene, or of the built-in head
     Render(Box<RenderArgs>),
+    /// Simulate light in layered slabs by Monte Carlo
+    Simulate(SimulateArgs),
     /// List the materials, heads, environments and techniques that ship inside
     Presets(PresetsArgs),
     /// Print a completion script for a shell
@@ -131,6 +133,33 @@ pub struct RenderArgs {
     /// Width and height of the built-in head's maps; 0: no maps [texels, 0 to 8192, default 2048]
     #[arg(long, value_name = "N")]
     pub map_size: Option<u32>,
+}
+
+/// Arguments of `cutis simulate`.
+#[derive(Debug, Args)]
+pub struct SimulateArgs {
+    /// A layer, top first; may be given several times: "mu_a=..,mu_s=..,g=..,n=..,d=.." [mu_a, mu_s: 1/mm; d: mm, inf for
+    /// the last; without g 0, without n 1, without d inf]
+    #[arg(long, value_name = "LAYER", required = true)]
+    pub layer: Vec<String>,
+    /// Photon packets [2048 to 10^12]
+    #[arg(long, value_name = "N", default_value_t = 1_000_000)]
+    pub photons: u64,
+    /// Seed of every random choice: the same seed gives the same numbers [0 to 2^64 - 1]
+    #[arg(long, value_name = "N", default_value_t = Settings::default().seed)]
+    pub seed: u64,
+    /// Rings around the beam in which exits are counted [1 to 100000]
+    #[arg(long, value_name = "N", default_value_t = crate::simulate::default_rings())]
+    pub rings: usize,
+    /// Width of a ring [mm, above 0, default: a twentieth of a transport mean free path]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub ring_width: Option<f64>,
+    /// Threads to work with [1 to 1024, default: one per processor]
+    #[arg(long, value_name = "N")]
+    pub threads: Option<usize>,
+    /// Print one JSON object on stdout, and nothing else
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Arguments of `cutis presets`.

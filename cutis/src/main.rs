@@ -7,12 +7,14 @@
 mod cli;
 mod completions;
 mod job;
+mod layer_words;
 mod machine;
 mod presets;
 mod progress;
 mod render;
 mod report;
 mod scene_source;
+mod simulate;
 mod talk;
 
 use cli::{Cli, Command};
@@ -45,6 +47,7 @@ fn main() -> ExitCode {
 fn run(cli: &Cli) -> miette::Result<Outcome> {
     match &cli.command {
         Command::Render(args) => render::run(args, cli.verbose),
+        Command::Simulate(args) => simulate::run(args, cli.verbose),
         Command::Presets(args) => presets::run(args),
         Command::Completions(args) => completions::run(args),
     }

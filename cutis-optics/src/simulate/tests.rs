@@ -1,0 +1,171 @@
+//! The simulation against exact solutions, published values and its own books.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use super::*;
+use crate::oracle::simpson;
+
+/// Packets of a test: standard errors near 1e-3.
+const PACKETS: u64 = 100_000;
+/// Standard errors that are let pass: 1 in 16,000 honest values lies farther out.
+const ERRORS: f64 = 4.0;
+
+pub(super) const GRID: Grid =
+    Grid { radial_step_mm: 0.1, radial_bins: 100, depth_step_mm: 0.1, depth_bins: 50, cosine_bins: 20 };
+
+/// Fails if counts stray from their shares farther than chance lets them in one of 100,000 tests.
+pub(super) fn chi_square_is_plausible(counts: &[u64], shares: &[f64]) {
+    let total = counts.iter().sum::<u64>() as f64;
+    let (mut chi2, mut degrees) = (0.0, -1.0);
+    let mut rest = (0.0, 0.0);
+    for (&count, &share) in counts.iter().zip(shares) {
+        // Bins that expect fewer than ten are taken together.
+        rest = (rest.0 + count as f64, rest.1 + share * total);
+        if rest.1 >= 10.0 {
+            chi2 += (rest.0 - rest.1).powi(2) / rest.1;
+            degrees += 1.0;
+            rest = (0.0, 0.0);
+        }
+    }
+    // Wilson & Hilferty: the cube root is nearly normal; 4.3 deviations are 1 in 100,000.
+    let spread = 2.0 / (9.0 * degrees);
+    let deviations = ((chi2 / degrees).cbrt() - (1.0 - spread)) / f64::sqrt(spread);
+    assert!(deviations < 4.3, "chi² {chi2} at {degrees} degrees of freedom");
+}
+
+fn layer(sigma_a: f64, sigma_s: f64, g: f64, n: f64, thickness_mm: f64) -> Layer {
+    Layer { sigma_a_per_mm: sigma_a, sigma_s_per_mm: sigma_s, g, refractive_index: n, thickness_mm }
+}
+
+fn run(layers: Vec<Layer>, packets: u64) -> Estimates {
+    Simulation { slab: LayeredSlab::in_air(layers).unwrap(), grid: GRID, seed: 1 }.run(packets)
+}
+
+fn meets(what: &str, got: Estimate, expected: f64, printed: f64) {
+    let off = (got.value - expected).abs();
+    assert!(off <= ERRORS * got.standard_error + printed, "{what}: {got:?} against {expected}");
+}
+
+/// Exact total reflectance of isotropic half-spaces with matched boundary, and Lambert's beam has its own column there.
+#[test]
+fn half_spaces_meet_chandrasekhar() {
+    for (albedo, exact) in [
+        (0.2, 0.035_230_52),
+        (0.5, 0.115_225_88),
+        (0.8, 0.285_254_50),
+        (0.9, 0.414_947_48),
+        (0.95, 0.535_540_99),
+        (0.99, 0.752_720_72),
+        (0.999, 0.912_845_33),
+    ] {
+        let packets = if albedo > 0.98 { PACKETS / 10 } else { PACKETS };
+        let estimates = run(vec![layer(1.0 - albedo, albedo, 0.0, 1.0, f64::INFINITY)], packets);
+        meets(&format!("albedo {albedo}"), estimates.diffuse_reflectance(), exact, 1e-8);
+    }
+}
+
+#[test]
+fn slabs_meet_published_values() {
+    // reference/slab_cases.csv: MCML with 1e7 packets and more, printed to six digits; its own errors are below 1e-4.
+    let van_de_hulst = run(vec![layer(1.0, 9.0, 0.75, 1.0, 0.2)], PACKETS);
+    meets("van de Hulst R", van_de_hulst.diffuse_reflectance(), 0.09739, 1e-5);
+    meets("van de Hulst T", van_de_hulst.transmittance(), 0.66096, 1e-5);
+    let giovanelli = run(vec![layer(1.0, 9.0, 0.0, 1.5, f64::INFINITY)], PACKETS);
+    assert!((giovanelli.specular_reflectance() - 0.04).abs() < 1e-12);
+    meets("Giovanelli R without specular", giovanelli.diffuse_reflectance(), 0.219_984, 1e-4);
+    let gardner = run(
+        vec![
+            layer(0.1, 10.0, 0.9, 1.37, 1.0),
+            layer(0.1, 1.0, 0.0, 1.37, 1.0),
+            layer(0.2, 1.0, 0.7, 1.37, 2.0),
+        ],
+        PACKETS,
+    );
+    assert!((gardner.specular_reflectance() - 0.024_372_9).abs() < 1e-7);
+    meets("three layers R", gardner.diffuse_reflectance(), 0.237_743, 1e-4);
+    meets("three layers T", gardner.transmittance(), 0.096_327_7, 1e-4);
+}
+
+#[test]
+fn without_scattering_it_is_beer_and_lambert_s_law() {
+    for index in [1.0, 1.4] {
+        let estimates = run(vec![layer(0.7, 0.0, 0.0, index, 1.0)], PACKETS);
+        // Matched: e^-0.7. Else the beam goes to and fro between two mirrors of reflectance r.
+        let r = ((index - 1.0) / (index + 1.0)).powi(2);
+        let e = (-0.7f64).exp();
+        meets("T", estimates.transmittance(), (1.0 - r).powi(2) * e / (1.0 - r * r * e * e), 0.0);
+        meets(
+            "R",
+            estimates.diffuse_reflectance(),
+            (1.0 - r).powi(2) * r * e * e / (1.0 - r * r * e * e),
+            0.0,
+        );
+    }
+}
+
+#[test]
+fn single_scattering_meets_its_integral() {
+    // Hardly any scattering: what comes back was scattered once, 2 pi ∫ p sigma_s ∫∫ over depth and angle; the second
+    // order is of the size of the albedo times as much.
+    let (sigma_a, sigma_s) = (1.0, 1e-3);
+    let estimates = run(vec![layer(sigma_a, sigma_s, 0.0, 1.0, f64::INFINITY)], 4 * PACKETS);
+    let expected = 0.5 * sigma_s / (sigma_a + sigma_s) * simpson(0.0, 1.0, 1000, |mu| mu / (mu + 1.0));
+    meets("R", estimates.diffuse_reflectance(), expected, 2e-3 * expected);
+}
+
+#[test]
+fn the_books_balance() {
+    let estimates = run(vec![layer(0.05, 9.0, 0.8, 1.4, 1.0), layer(0.2, 5.0, 0.7, 1.38, 3.0)], 10_240);
+    let books = estimates.specular_reflectance()
+        + estimates.diffuse_reflectance().value
+        + estimates.transmittance().value
+        + estimates.absorbed().value
+        + estimates.roulette();
+    assert!((books - 1.0).abs() < 1e-12, "{books}");
+    assert!(estimates.roulette().abs() < 1e-3, "{}", estimates.roulette());
+    let sum = |values: Vec<Estimate>| values.iter().map(|e| e.value).sum::<f64>();
+    assert!((sum(estimates.reflectance_by_cosine()) - estimates.diffuse_reflectance().value).abs() < 1e-12);
+    assert!((sum(estimates.absorbed_by_layer()) - estimates.absorbed().value).abs() < 1e-12);
+    assert!((sum(estimates.absorbed_by_depth()) - estimates.absorbed().value).abs() < 1e-12);
+}
+
+#[test]
+fn standard_errors_are_what_seeds_differ_by() {
+    let slab = LayeredSlab::in_air(vec![layer(0.1, 5.0, 0.5, 1.4, 2.0)]).unwrap();
+    let runs: Vec<Estimate> = (0..40)
+        .map(|seed| Simulation { slab: slab.clone(), grid: GRID, seed }.run(20_480).diffuse_reflectance())
+        .collect();
+    let mean = runs.iter().map(|e| e.value).sum::<f64>() / 40.0;
+    let deviation = (runs.iter().map(|e| (e.value - mean).powi(2)).sum::<f64>() / 39.0).sqrt();
+    let stated = runs.iter().map(|e| e.standard_error).sum::<f64>() / 40.0;
+    // A deviation of 40 values is known to 11 %: 4 of these.
+    assert!((deviation / stated - 1.0).abs() < 0.45, "{deviation} against {stated}");
+}
+
+#[test]
+fn batches_may_run_in_any_order() {
+    let simulation = Simulation {
+        slab: LayeredSlab::in_air(vec![layer(0.1, 5.0, 0.9, 1.4, 2.0)]).unwrap(),
+        grid: GRID,
+        seed: 5,
+    };
+    let mut backwards: Vec<Tally> = (0..4).rev().map(|b| simulation.batch(b * BATCH, BATCH)).collect();
+    backwards.reverse();
+    let mut estimates = Estimates::new(&GRID, 1);
+    backwards.iter().for_each(|batch| estimates.add(batch));
+    let straight = simulation.run(4 * BATCH);
+    assert_eq!(estimates.diffuse_reflectance(), straight.diffuse_reflectance());
+    assert_eq!(estimates.reflectance_per_mm2(), straight.reflectance_per_mm2());
+}
+
+#[test]
+fn impossible_layers_are_refused_with_the_number_at_fault() {
+    let bad = |l: Layer| LayeredSlab::in_air(vec![l]).unwrap_err().to_string();
+    assert!(bad(layer(-1.0, 1.0, 0.0, 1.4, 1.0)).contains("layer 1: sigma_a_per_mm"));
+    assert!(bad(layer(f64::NAN, 1.0, 0.0, 1.4, 1.0)).contains("sigma_a_per_mm"));
+    assert!(bad(layer(1.0, 1.0, 1.0, 1.4, 1.0)).contains("g must be between -1 and 1"));
+    assert!(bad(layer(1.0, 1.0, 0.0, 9.0, 1.0)).contains("refractive_index"));
+    assert!(bad(layer(1.0, 1.0, 0.0, 1.4, 0.0)).contains("thickness_mm must be above 0"));
+    let endless = layer(1.0, 1.0, 0.0, 1.4, f64::INFINITY);
+    assert_eq!(LayeredSlab::in_air(vec![endless, endless]), Err(LayerError::InfiniteInside { layer: 1 }));
+    assert_eq!(LayeredSlab::in_air(Vec::new()), Err(LayerError::Empty));
+}

@@ -1,8 +1,10 @@
 //! Fits of sums of Gaussians to the dipole of marble: one channel with four and eight, all three together with six.
+//! The spectrum of a stack of three layers; Monte Carlo of two published slabs on one thread.
 #![allow(missing_docs, reason = "criterion's macros make public functions")]
 
-use criterion::{BenchmarkId, Criterion, SamplingMode, criterion_group, criterion_main};
-use cutis_optics::{Dipole, FitMethod, Medium, fit, presets, rgb_kernel};
+use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
+use cutis_optics::simulate::{Grid, Layer, LayeredSlab, Simulation};
+use cutis_optics::{Dipole, FitMethod, Medium, Profile, Stack, TissueLayer, fit, presets, rgb_kernel};
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -31,5 +33,49 @@ fn optics(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, optics);
+/// Epidermis, papillary and reticular dermis, about.
+fn three_layers() -> Stack {
+    let layer = |sigma_a_per_mm, sigma_s_reduced_per_mm, refractive_index, thickness_mm| TissueLayer {
+        medium: Medium { sigma_a_per_mm, sigma_s_reduced_per_mm, refractive_index },
+        thickness_mm,
+    };
+    let layers =
+        [layer(0.3, 6.0, 1.4, 0.25), layer(0.1, 3.0, 1.38, 1.0), layer(0.05, 3.0, 1.38, f64::INFINITY)];
+    Stack::in_air(&layers).expect("the layers are possible")
+}
+
+/// Packets of one run.
+const PACKETS: u64 = 20_480;
+
+/// One layer of 1/mm coefficients in air.
+fn simulation(g: f64, refractive_index: f64, thickness_mm: f64) -> Simulation {
+    let layer = Layer { sigma_a_per_mm: 1.0, sigma_s_per_mm: 9.0, g, refractive_index, thickness_mm };
+    Simulation {
+        slab: LayeredSlab::in_air(vec![layer]).expect("the layer is possible"),
+        grid: Grid {
+            radial_step_mm: 0.01,
+            radial_bins: 200,
+            depth_step_mm: 0.01,
+            depth_bins: 100,
+            cosine_bins: 20,
+        },
+        seed: 1,
+    }
+}
+
+fn layers(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("layers");
+    let stack = three_layers();
+    group.bench_function("spectrum of three layers", |b| b.iter(|| stack.spectrum(black_box(1.3))));
+    group.sample_size(10).throughput(Throughput::Elements(PACKETS));
+    for (name, simulation) in [
+        ("van de Hulst slab", simulation(0.75, 1.0, 0.2)),
+        ("half-space of index 1.5, albedo 0.9", simulation(0.0, 1.5, f64::INFINITY)),
+    ] {
+        group.bench_function(BenchmarkId::new("simulate", name), |b| b.iter(|| simulation.run(PACKETS)));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, optics, layers);
 criterion_main!(benches);

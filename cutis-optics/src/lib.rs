@@ -2,7 +2,8 @@
 //!
 //! The way of the data: a [`Medium`] gives a [`Dipole`], a dipole is a [`Profile`] (radial, and in closed form in
 //! spatial frequency), a profile is fitted by a [`GaussianSum`], three channels share variances in an
-//! [`RgbGaussianSum`]. Symbols are listed in `docs/notation.md`.
+//! [`RgbGaussianSum`]. Layers make a [`Stack`] of [`Multipole`]s, a profile like any other; [`simulate`] is the Monte
+//! Carlo that they are held to. Symbols are listed in `docs/notation.md`.
 //! Lengths in mm, coefficients in 1/mm. Everything here is f64 and pure.
 
 pub mod boundary;
@@ -10,18 +11,22 @@ mod dipole;
 pub mod fit;
 mod gaussian_sum;
 mod medium;
+mod multipole;
 pub mod presets;
 mod profile;
 mod rgb_gaussian_sum;
 pub mod simulate;
+mod stack;
 
 pub use dipole::{DiffusionValidity, Dipole};
 pub use fit::{Fit, FitError, FitMethod, RgbFit, fit, fit_rgb, relative_rms_power_error, rgb_kernel};
 pub use gaussian_sum::{Gaussian, GaussianSum};
 pub use medium::{Medium, MediumError};
+pub use multipole::{Multipole, MultipoleError, Response};
 pub use presets::{Preset, UnknownPreset};
 pub use profile::Profile;
 pub use rgb_gaussian_sum::RgbGaussianSum;
+pub use stack::{Stack, StackError, TissueLayer};
 
 #[cfg(test)]
 mod oracle;

@@ -104,7 +104,7 @@ impl Dipole {
 impl Profile for Dipole {
     /// R(k) = alpha'/2 (e^(-z_r q) + e^(-z_v q)), q = sqrt(k² + sigma_tr²).
     fn spectrum(&self, k_per_mm: f64) -> f64 {
-        let q = (k_per_mm * k_per_mm + self.sigma_tr_per_mm * self.sigma_tr_per_mm).sqrt();
+        let q = k_per_mm.hypot(self.sigma_tr_per_mm);
         let poles = (-self.depth_real_mm * q).exp() + (-self.height_virtual_mm * q).exp();
         0.5 * self.albedo_reduced * poles
     }

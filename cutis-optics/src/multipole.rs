@@ -112,6 +112,10 @@ impl Multipole {
     }
 
     /// What the slab does to light of spatial frequency k (radians per mm).
+    #[allow(
+        clippy::imprecise_flops,
+        reason = "hypot would cost as much as all the rest; nothing here nears overflow"
+    )]
     pub fn response(&self, k_per_mm: f64) -> Response {
         let q = (k_per_mm * k_per_mm + self.sigma_tr_per_mm * self.sigma_tr_per_mm).sqrt();
         let (l, d) = (self.source_depth_mm, self.thickness_mm);

@@ -147,10 +147,12 @@ fn check(number: usize, layer: &Layer) -> Result<(), LayerError> {
     if !coefficient.contains(&layer.sigma_s_per_mm) {
         return refuse("sigma_s_per_mm", "from 0 to 1e9 1/mm", layer.sigma_s_per_mm);
     }
-    if !(layer.g.abs() < 1.0) {
+    let is_cosine = layer.g > -1.0 && layer.g < 1.0;
+    if !is_cosine {
         return refuse("g", "between -1 and 1", layer.g);
     }
-    if !(layer.thickness_mm > 0.0) {
+    let has_thickness = layer.thickness_mm > 0.0;
+    if !has_thickness {
         return refuse("thickness_mm", "above 0", layer.thickness_mm);
     }
     check_index(number, layer.refractive_index)

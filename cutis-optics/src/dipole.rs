@@ -93,12 +93,13 @@ impl Dipole {
             DiffusionValidity::Good { albedo_reduced, radius_mm: self.depth_real_mm }
         }
     }
+}
 
-    fn pole_per_mm2(&self, z_mm: f64, r_mm: f64) -> f64 {
-        let s = r_mm.hypot(z_mm);
-        let x = self.sigma_tr_per_mm * s;
-        z_mm * (1.0 + x) * (-x).exp() / (4.0 * PI * s * s * s)
-    }
+/// One pole at depth z: z (1 + sigma_tr s) e^(-sigma_tr s) / (4 pi s³), s = sqrt(r² + z²).
+pub(crate) fn pole_per_mm2(sigma_tr_per_mm: f64, z_mm: f64, r_mm: f64) -> f64 {
+    let s = r_mm.hypot(z_mm);
+    let x = sigma_tr_per_mm * s;
+    z_mm * (1.0 + x) * (-x).exp() / (4.0 * PI * s * s * s)
 }
 
 impl Profile for Dipole {
@@ -111,9 +112,8 @@ impl Profile for Dipole {
 
     /// R(r) of Jensen et al. 2001: both poles.
     fn at_mm(&self, r_mm: f64) -> f64 {
-        let poles =
-            self.pole_per_mm2(self.depth_real_mm, r_mm) + self.pole_per_mm2(self.height_virtual_mm, r_mm);
-        self.albedo_reduced * poles
+        let pole = |z_mm| pole_per_mm2(self.sigma_tr_per_mm, z_mm, r_mm);
+        self.albedo_reduced * (pole(self.depth_real_mm) + pole(self.height_virtual_mm))
     }
 }
 

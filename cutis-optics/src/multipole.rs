@@ -15,8 +15,8 @@
 //! dipole.
 
 use crate::boundary::reflection_parameter;
+use crate::dipole::pole_per_mm2;
 use crate::{Medium, MediumError, Profile};
-use core::f64::consts::PI;
 
 /// Pairs of poles on either side of the slab that are summed in the radius: what is left out is below e^(-200 sigma_tr L),
 /// and without absorption below 1e-6 of the first.
@@ -141,7 +141,8 @@ impl Multipole {
     pub fn transmittance_at_mm(&self, r_mm: f64) -> f64 {
         let d = self.thickness_mm;
         self.sum_of_poles(|real, mirrored| {
-            self.pole_per_mm2(d - real, r_mm) - self.pole_per_mm2(d - mirrored, r_mm)
+            pole_per_mm2(self.sigma_tr_per_mm, d - real, r_mm)
+                - pole_per_mm2(self.sigma_tr_per_mm, d - mirrored, r_mm)
         })
     }
 
@@ -160,13 +161,6 @@ impl Multipole {
         let outer: f64 = (1..=POLES).rev().map(|i| at(i) + at(-i)).sum();
         self.albedo_reduced * (outer + at(0))
     }
-
-    /// z (1 + sigma_tr s) e^(-sigma_tr s) / (4 pi s³), s = sqrt(r² + z²).
-    fn pole_per_mm2(&self, z_mm: f64, r_mm: f64) -> f64 {
-        let s = r_mm.hypot(z_mm);
-        let x = self.sigma_tr_per_mm * s;
-        z_mm * (1.0 + x) * (-x).exp() / (4.0 * PI * s * s * s)
-    }
 }
 
 /// The reflectance.
@@ -176,7 +170,8 @@ impl Profile for Multipole {
     }
 
     fn at_mm(&self, r_mm: f64) -> f64 {
-        self.sum_of_poles(|real, mirrored| self.pole_per_mm2(real, r_mm) - self.pole_per_mm2(mirrored, r_mm))
+        let pole = |z_mm| pole_per_mm2(self.sigma_tr_per_mm, z_mm, r_mm);
+        self.sum_of_poles(|real, mirrored| pole(real) - pole(mirrored))
     }
 }
 

@@ -37,7 +37,7 @@ impl Job {
         check_backend(&args.backend)?;
         let settings = settings(args)?;
         let film = film(args)?;
-        let threads = args.threads.map(|n| in_range("--threads", n, 1..=1024, "1 to 1024")).transpose()?;
+        let threads = threads_in_range(args.threads)?;
         let source = source(args)?;
         let format = check_outputs(args, &settings)?;
         let (output, json, warnings) = (args.output.clone(), args.json, idle_wishes(args, format));
@@ -177,7 +177,13 @@ fn named<T: Copy>(flag: &str, name: &str, known: impl IntoIterator<Item = (Strin
     value.ok_or_else(|| miette!("{flag}: there is no '{name}'"))
 }
 
-fn in_range(
+/// Checks `--threads`.
+pub fn threads_in_range(threads: Option<usize>) -> Result<Option<usize>> {
+    threads.map(|n| in_range("--threads", n, 1..=1024, "1 to 1024")).transpose()
+}
+
+/// A number, if it is allowed.
+pub fn in_range(
     flag: &str,
     value: usize,
     allowed: std::ops::RangeInclusive<usize>,

@@ -1,4 +1,12 @@
-//! What a run took from the machine.
+//! What a run takes from the machine.
+
+use miette::{IntoDiagnostic, Result};
+
+/// Works with so many threads from here on; one per processor if none are named.
+pub fn choose_threads(threads: Option<usize>) -> Result<()> {
+    let Some(threads) = threads else { return Ok(()) };
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().into_diagnostic()
+}
 
 /// Most memory the program held at once, MiB; none where the system does not tell in a file.
 pub fn peak_memory_mib() -> Option<f64> {

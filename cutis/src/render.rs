@@ -2,6 +2,7 @@
 
 use crate::cli::RenderArgs;
 use crate::job::Job;
+use crate::machine::choose_threads;
 use crate::progress::Bar;
 use crate::report::Report;
 use crate::{Outcome, talk};
@@ -61,11 +62,6 @@ fn say_report(report: &DiffusionReport) -> Result<()> {
         100.0 * report.seam_error_mean,
         100.0 * report.seam_error_p99,
     ))
-}
-
-fn choose_threads(threads: Option<usize>) -> Result<()> {
-    let Some(threads) = threads else { return Ok(()) };
-    rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().into_diagnostic()
 }
 
 fn draw(renderer: &dyn Renderer, scene: &Scene, job: &Job, verbose: u8) -> Result<Frame> {

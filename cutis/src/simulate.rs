@@ -1,7 +1,9 @@
 //! `cutis simulate`: Monte Carlo of light in layered slabs.
 
 use crate::cli::SimulateArgs;
+use crate::job::{in_range, threads_in_range};
 use crate::layer_words::parse_layer;
+use crate::machine::choose_threads;
 use crate::progress::Bar;
 use crate::{Outcome, talk};
 use cutis_optics::simulate::{BATCH, Estimate, Estimates, Grid, Layer, LayeredSlab, Simulation};
@@ -71,14 +73,13 @@ struct Radial {
 /// Simulates and prints.
 pub fn run(args: &SimulateArgs, verbose: u8) -> miette::Result<Outcome> {
     let simulation = simulation(args)?;
-    let pool =
-        rayon::ThreadPoolBuilder::new().num_threads(args.threads.unwrap_or(0)).build().into_diagnostic()?;
+    choose_threads(threads_in_range(args.threads)?)?;
     let start = Instant::now();
     let bar = Bar::new(verbose);
-    let estimates = pool.install(|| in_parallel(&simulation, args.photons, &bar));
+    let estimates = in_parallel(&simulation, args.photons, &bar);
     bar.finish();
     let seconds = start.elapsed().as_secs_f64();
-    let report = Report::new(&simulation, &estimates, seconds, pool.current_num_threads());
+    let report = Report::new(&simulation, &estimates, seconds, rayon::current_num_threads());
     if args.json {
         talk::say(&serde_json::to_string_pretty(&report).into_diagnostic()?)?;
     } else {
@@ -92,12 +93,7 @@ fn simulation(args: &SimulateArgs) -> miette::Result<Simulation> {
     if !(2 * BATCH..=1_000_000_000_000).contains(&args.photons) {
         bail!("--photons must be {} to 10^12, got {}", 2 * BATCH, args.photons);
     }
-    if args.threads.is_some_and(|n| !(1..=1024).contains(&n)) {
-        bail!("--threads must be 1 to 1024, got {}", args.threads.unwrap_or(0));
-    }
-    if !(1..=100_000).contains(&args.rings) {
-        bail!("--rings must be 1 to 100000, got {}", args.rings);
-    }
+    in_range("--rings", args.rings, 1..=100_000, "1 to 100000")?;
     let layers = args.layer.iter().map(|words| parse_layer(words)).collect::<miette::Result<Vec<Layer>>>()?;
     let radial_step_mm = args.ring_width.unwrap_or_else(|| ring_width_mm(&layers));
     if !(radial_step_mm > 0.0 && radial_step_mm.is_finite()) {

@@ -95,7 +95,7 @@ impl<const V: bool> Lines<'_, V> {
         let step = (end - start) / (count - 1) as f32;
         let mut bend = Vec2::ZERO;
         for (i, &stretch) in self.stretch_mm[first..first + count].iter().enumerate() {
-            let off = (stretch - (start + step * i as f32)).abs();
+            let off = stretch - (start + step * i as f32);
             bend += off * off;
         }
         let (bend, start_mm, end_mm) = if V { (bend.y, start.y, end.y) } else { (bend.x, start.x, end.x) };

@@ -5,7 +5,7 @@
 //! leaves the texel's own chart: towards a seam the spacing shrinks with the distance to it, down to nothing.
 //!
 //! Placing and weighing taps costs more than reading them. Where the stretch hardly varies, which is nearly everywhere,
-//! it is done once for eight neighbouring texels, elsewhere for each ([`lines`]).
+//! it is done for the first and the last of up to 32 neighbours, elsewhere for each texel ([`lines`]).
 
 mod bundle;
 mod lines;
@@ -114,7 +114,7 @@ const CUBIC_SPACING: f32 = 4.0;
 /// Variance in texel² from which on linear reads are good enough at any spacing.
 const CUBIC_TEXEL2: f32 = 3.0;
 
-/// Texels that share taps at most.
+/// Texels that share the taps of two at most.
 const LARGEST_BLOCK: usize = 4 * BLOCK;
 
 /// Blurs `source` along an axis into `target`.

@@ -82,7 +82,7 @@ pub struct RenderArgs {
     /// Print one JSON object on stdout, and nothing else
     #[arg(long)]
     pub json: bool,
-    /// Width and height of the largest object's irradiance texture [texels, 16 to 16384]
+    /// Width and height of the largest object's irradiance texture, rounded up to a multiple of 8 [texels, 16 to 16384]
     #[arg(long, value_name = "N", default_value_t = Settings::default().irradiance_size)]
     pub irradiance_size: u32,
     /// Gaussians in the kernel of a material given by its coefficients [1 to 16]

@@ -7,7 +7,8 @@
 //! transforms to e^(-|z| q) / 2, with no approximation.
 //! Not modelled: single scattering, oblique light, anything closer than about one mean free path to the point lit.
 
-use crate::{Medium, MediumError, Profile};
+use crate::medium::reflection_parameter;
+use crate::{Boundary, Medium, MediumError, Profile};
 use core::f64::consts::PI;
 
 /// Reduced albedo below which the dipole is reported as untrustworthy.
@@ -53,19 +54,19 @@ impl DiffusionValidity {
 impl Dipole {
     /// The dipole of `medium` under air; refuses what [`Medium::validated`] refuses.
     pub fn new(medium: &Medium) -> Result<Self, MediumError> {
-        Self::with_boundary(medium, medium.refractive_index)
+        Self::with_boundary(medium, Boundary::smooth(medium.refractive_index))
     }
 
-    /// The dipole of `medium` under something else than air: the ratio of indices is given apart.
-    pub fn with_boundary(medium: &Medium, eta_inside_over_outside: f64) -> Result<Self, MediumError> {
+    /// The dipole of `medium` under something else than air, or under a rough surface.
+    pub fn with_boundary(medium: &Medium, boundary: Boundary) -> Result<Self, MediumError> {
         let medium = medium.validated()?;
-        let boundary = Medium { refractive_index: eta_inside_over_outside, ..medium }.validated()?;
+        let reflection_parameter = reflection_parameter(&medium, boundary)?;
         let l_mm = medium.transport_mean_free_path_mm();
         Ok(Self {
             albedo_reduced: medium.albedo_reduced(),
             sigma_tr_per_mm: medium.sigma_tr_per_mm(),
             depth_real_mm: l_mm,
-            height_virtual_mm: l_mm + 4.0 * boundary.boundary_to_air() * medium.diffusion_coefficient_mm(),
+            height_virtual_mm: l_mm + 4.0 * reflection_parameter * medium.diffusion_coefficient_mm(),
         })
     }
 
@@ -182,9 +183,9 @@ mod tests {
     #[test]
     fn another_boundary_only_moves_the_virtual_source() {
         let medium = Medium::new(0.01, 1.0, 1.4).unwrap();
-        let matched = Dipole::with_boundary(&medium, 1.0).unwrap();
+        let matched = Dipole::with_boundary(&medium, Boundary::smooth(1.0)).unwrap();
         let expected = medium.transport_mean_free_path_mm() * (1.0 + 4.0 / 3.0);
         assert!((matched.height_virtual_mm() / expected - 1.0).abs() < 4.0 * f64::EPSILON);
-        assert!(Dipole::with_boundary(&medium, 7.0).is_err());
+        assert!(Dipole::with_boundary(&medium, Boundary::smooth(7.0)).is_err());
     }
 }

@@ -18,6 +18,7 @@ mod rgb_gaussian_sum;
 pub mod simulate;
 mod stack;
 
+pub use boundary::Boundary;
 pub use dipole::{DiffusionValidity, Dipole};
 pub use fit::{Fit, FitError, FitMethod, RgbFit, fit, fit_rgb, relative_rms_power_error, rgb_kernel};
 pub use gaussian_sum::{Gaussian, GaussianSum};

@@ -5,7 +5,7 @@
 //! Source: Jensen, Marschner, Levoy & Hanrahan 2001, doi:10.1145/383259.383319 (not opened), as restated by
 //! Mertens et al. 2003, table 1. Reduced coefficients carry no phase function: similarity theory is assumed.
 
-use crate::boundary;
+use crate::boundary::{self, Boundary};
 
 /// Largest coefficient taken for real, 1/mm: products of two of them and their inverses stay far from overflow.
 pub const COEFFICIENT_MAX_PER_MM: f64 = 1e9;
@@ -63,6 +63,12 @@ pub enum MediumError {
     RefractiveIndex {
         /// The index given.
         value: f64,
+    },
+    /// A rough surface lets in a share of the light.
+    #[error("rho_dt_mean of a rough surface must lie in 0 to 1, got {rho_dt_mean}")]
+    RoughBoundary {
+        /// The share given.
+        rho_dt_mean: f64,
     },
 }
 
@@ -128,6 +134,17 @@ impl Medium {
     pub fn boundary_to_air(&self) -> f64 {
         boundary::reflection_parameter(self.refractive_index)
     }
+}
+
+/// Boundary factor A of a face of `medium`, if the boundary can be real.
+pub(crate) fn reflection_parameter(medium: &Medium, boundary: Boundary) -> Result<f64, MediumError> {
+    Medium { refractive_index: boundary.eta_inside_over_outside(), ..*medium }.validated()?;
+    if let Boundary::Rough { rho_dt_mean, .. } = boundary
+        && !(rho_dt_mean > 0.0 && rho_dt_mean <= 1.0)
+    {
+        return Err(MediumError::RoughBoundary { rho_dt_mean });
+    }
+    Ok(boundary.reflection_parameter())
 }
 
 fn check_coefficient(quantity: &'static str, value: f64) -> Result<(), MediumError> {

@@ -14,9 +14,9 @@
 //! Valid for l < d: a source below the slab would make the transmittance negative. Reduced albedo above 0.95, as the
 //! dipole.
 
-use crate::boundary::reflection_parameter;
 use crate::dipole::pole_per_mm2;
-use crate::{Medium, MediumError, Profile};
+use crate::medium::reflection_parameter;
+use crate::{Boundary, Medium, MediumError, Profile};
 
 /// Pairs of poles on either side of the slab that are summed in the radius: what is left out is below e^(-200 sigma_tr L),
 /// and without absorption below 1e-6 of the first.
@@ -79,15 +79,15 @@ pub enum MultipoleError {
 }
 
 impl Multipole {
-    /// A slab of `medium`. The ratios of refractive indices at its faces are its own over its neighbour's.
+    /// A slab of `medium` between two boundaries.
     ///
     /// # Errors
     /// If the medium or a ratio cannot be real, the thickness is not finite and positive, or the source does not lie inside.
     pub fn new(
         medium: &Medium,
         thickness_mm: f64,
-        eta_slab_over_above: f64,
-        eta_slab_over_below: f64,
+        above: Boundary,
+        below: Boundary,
     ) -> Result<Self, MultipoleError> {
         let medium = medium.validated()?;
         if !(thickness_mm > 0.0 && thickness_mm.is_finite()) {
@@ -97,17 +97,16 @@ impl Multipole {
         if mean_free_path_mm >= thickness_mm {
             return Err(MultipoleError::TooThin { thickness_mm, mean_free_path_mm });
         }
-        let beyond_mm = |eta: f64| -> Result<f64, MediumError> {
-            Medium { refractive_index: eta, ..medium }.validated()?;
-            Ok(2.0 * reflection_parameter(eta) * medium.diffusion_coefficient_mm())
+        let beyond_mm = |boundary: Boundary| -> Result<f64, MediumError> {
+            Ok(2.0 * reflection_parameter(&medium, boundary)? * medium.diffusion_coefficient_mm())
         };
         Ok(Self {
             albedo_reduced: medium.albedo_reduced(),
             sigma_tr_per_mm: medium.sigma_tr_per_mm(),
             source_depth_mm: mean_free_path_mm,
             thickness_mm,
-            beyond_top_mm: beyond_mm(eta_slab_over_above)?,
-            beyond_bottom_mm: beyond_mm(eta_slab_over_below)?,
+            beyond_top_mm: beyond_mm(above)?,
+            beyond_bottom_mm: beyond_mm(below)?,
         })
     }
 
@@ -184,7 +183,7 @@ mod tests {
 
     fn slab(sigma_a: f64, sigma_s_reduced: f64, thickness_mm: f64, top: f64, bottom: f64) -> Multipole {
         let medium = Medium::new(sigma_a, sigma_s_reduced, 1.4).unwrap();
-        Multipole::new(&medium, thickness_mm, top, bottom).unwrap()
+        Multipole::new(&medium, thickness_mm, Boundary::smooth(top), Boundary::smooth(bottom)).unwrap()
     }
 
     fn some_slabs() -> [Multipole; 5] {
@@ -258,7 +257,7 @@ mod tests {
     fn a_thick_slab_is_a_half_space() {
         let medium = Medium::new(0.1, 2.0, 1.4).unwrap();
         let (thick, half_space) =
-            (Multipole::new(&medium, 60.0, 1.4, 1.0).unwrap(), Dipole::new(&medium).unwrap());
+            (Multipole::new(&medium, 60.0, Boundary::smooth(1.4), Boundary::smooth(1.0)).unwrap(), Dipole::new(&medium).unwrap());
         for k in [0.0, 0.3, 2.0, 30.0] {
             // Distances to the far face round to 1e-14 mm.
             assert!((thick.spectrum(k) - half_space.spectrum(k)).abs() < 1e-13, "{k}");
@@ -302,11 +301,11 @@ mod tests {
         let medium = Medium::new(0.1, 2.0, 1.4).unwrap();
         for thickness in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(matches!(
-                Multipole::new(&medium, thickness, 1.4, 1.4),
+                Multipole::new(&medium, thickness, Boundary::smooth(1.4), Boundary::smooth(1.4)),
                 Err(MultipoleError::Thickness { .. })
             ));
         }
-        assert!(matches!(Multipole::new(&medium, 1.0, 9.0, 1.4), Err(MultipoleError::Medium(_))));
-        assert!(matches!(Multipole::new(&medium, 0.4, 1.4, 1.4), Err(MultipoleError::TooThin { .. })));
+        assert!(matches!(Multipole::new(&medium, 1.0, Boundary::smooth(9.0), Boundary::smooth(1.4)), Err(MultipoleError::Medium(_))));
+        assert!(matches!(Multipole::new(&medium, 0.4, Boundary::smooth(1.4), Boundary::smooth(1.4)), Err(MultipoleError::TooThin { .. })));
     }
 }

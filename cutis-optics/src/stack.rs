@@ -8,7 +8,7 @@
 //! thickness, because each part is lit anew by a source one mean free path under its face.
 
 use crate::multipole::{MultipoleError, Response};
-use crate::{Dipole, Medium, Multipole, Profile};
+use crate::{Boundary, Dipole, Medium, Multipole, Profile};
 use core::f64::consts::{PI, TAU};
 
 /// One layer of a stack.
@@ -66,23 +66,38 @@ impl Stack {
     /// # Errors
     /// If there is no layer or one of them cannot be.
     pub fn in_air(layers: &[TissueLayer]) -> Result<Self, StackError> {
+        Self::with_top(layers, Boundary::smooth)
+    }
+
+    /// A stack in air whose top is rough: `rho_dt_mean` is the share of isotropic light that it lets in (see
+    /// [`Boundary::Rough`]); between layers all is smooth.
+    ///
+    /// # Errors
+    /// As [`Stack::in_air`], or if the share is not one.
+    pub fn under_rough_surface(layers: &[TissueLayer], rho_dt_mean: f64) -> Result<Self, StackError> {
+        Self::with_top(layers, |eta_inside_over_outside| Boundary::Rough {
+            eta_inside_over_outside,
+            rho_dt_mean,
+        })
+    }
+
+    /// A stack in air; `top` makes the uppermost boundary of the ratio of indices there.
+    fn with_top(layers: &[TissueLayer], top: impl Fn(f64) -> Boundary) -> Result<Self, StackError> {
         let last = layers.last().ok_or(StackError::Empty)?;
         let index = |i: usize| layers.get(i).map_or(1.0, |layer| layer.medium.refractive_index);
         let refused = |i: usize| move |reason| StackError::Layer { layer: i + 1, reason };
         let endless = last.thickness_mm == f64::INFINITY;
         let finite = if endless { &layers[..layers.len() - 1] } else { layers };
+        // In front of the first and behind the last there is air.
+        let above = |i: usize| if i == 0 { top(index(0)) } else { Boundary::smooth(index(i) / index(i - 1)) };
         let slab = |(i, layer): (usize, &TissueLayer)| {
-            // In front of the first and behind the last there is air.
-            let above = if i == 0 { 1.0 } else { index(i - 1) };
-            let own = layer.medium.refractive_index;
-            Multipole::new(&layer.medium, layer.thickness_mm, own / above, own / index(i + 1))
-                .map_err(refused(i))
+            let below = Boundary::smooth(index(i) / index(i + 1));
+            Multipole::new(&layer.medium, layer.thickness_mm, above(i), below).map_err(refused(i))
         };
         let slabs = finite.iter().enumerate().map(slab).collect::<Result<Vec<_>, _>>()?;
         let i = layers.len() - 1;
-        let above = if i == 0 { 1.0 } else { index(i - 1) };
         let half_space = || {
-            let dipole = Dipole::with_boundary(&last.medium, last.medium.refractive_index / above);
+            let dipole = Dipole::with_boundary(&last.medium, above(i));
             dipole.map_err(MultipoleError::from).map_err(refused(i))
         };
         let bottom = if endless { Some(half_space()?) } else { None };
@@ -195,8 +210,8 @@ mod tests {
                     let slab = Multipole::new(
                         &layers[i].medium,
                         layers[i].thickness_mm,
-                        index(i) / above,
-                        index(i) / below,
+                        Boundary::smooth(index(i) / above),
+                        Boundary::smooth(index(i) / below),
                     )
                     .unwrap();
                     slab.response(k)
@@ -217,10 +232,24 @@ mod tests {
     }
 
     #[test]
+    fn a_rough_top_holds_less_light_back() {
+        let layers = three();
+        let smooth = Stack::in_air(&layers).unwrap();
+        // A rough surface that lets in as much as a smooth one of index 1.4 (1 - Fdr) eta² is that surface.
+        let lets_in = (1.0 - Boundary::smooth(1.4).diffuse_reflectance()) * 1.4 * 1.4;
+        let same = Stack::under_rough_surface(&layers, lets_in).unwrap();
+        assert!((same.total() - smooth.total()).abs() < 1e-14);
+        // One that lets more in also lets more out: more light comes back, and it spreads less.
+        let open = Stack::under_rough_surface(&layers, 1.0).unwrap();
+        assert!(open.total() > smooth.total());
+        assert!(Stack::under_rough_surface(&layers, 1.5).is_err());
+    }
+
+    #[test]
     fn one_layer_is_the_slab_and_the_radius_is_met() {
         let one = layer(0.2, 5.0, 1.4, 1.0);
         let stack = Stack::in_air(&[one]).unwrap();
-        let slab = Multipole::new(&one.medium, 1.0, 1.4, 1.4).unwrap();
+        let slab = Multipole::new(&one.medium, 1.0, Boundary::smooth(1.4), Boundary::smooth(1.4)).unwrap();
         let unit = slab.spectrum(0.0) / one.medium.transport_mean_free_path_mm().powi(2);
         for r in [0.0, 0.05, 0.3, 1.0, 3.0] {
             assert!((stack.at_mm(r) - slab.at_mm(r)).abs() < 1e-9 * unit, "R({r})");

@@ -84,9 +84,14 @@ static LEGENDRE: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| {
     GaussLegendre::new(nodes).iter().map(|&(x, w)| (0.5 * (x + 1.0), 0.5 * w)).collect()
 });
 
-/// ∫ f over [0, 1] by Gauss and Legendre's rule.
+/// Nodes and weights of Gauss and Legendre's rule on [0, 1].
+pub(crate) fn unit_nodes() -> impl Iterator<Item = (f64, f64)> {
+    LEGENDRE.iter().copied()
+}
+
+/// ∫ f over [0, 1] by that rule.
 pub(crate) fn integral_over_unit(f: impl Fn(f64) -> f64) -> f64 {
-    LEGENDRE.iter().map(|&(x, weight)| weight * f(x)).sum()
+    unit_nodes().map(|(x, weight)| weight * f(x)).sum()
 }
 
 /// Cosine inside a medium for one outside, at a ratio of indices of at least 1.

@@ -6,27 +6,34 @@
 //! Carlo that they are held to. Symbols are listed in `docs/notation.md`.
 //! Lengths in mm, coefficients in 1/mm. Everything here is f64 and pure.
 
+mod better_dipole;
 pub mod boundary;
 mod dipole;
 pub mod fit;
 mod gaussian_sum;
+mod grosjean;
 mod medium;
 mod multipole;
+mod photon_beam;
 pub mod presets;
 mod profile;
 mod rgb_gaussian_sum;
 pub mod simulate;
+mod single_scattering;
 mod stack;
 
+pub use better_dipole::BetterDipole;
 pub use boundary::Boundary;
 pub use dipole::{DiffusionValidity, Dipole};
 pub use fit::{Fit, FitError, FitMethod, RgbFit, fit, fit_rgb, relative_rms_power_error, rgb_kernel};
 pub use gaussian_sum::{Gaussian, GaussianSum};
 pub use medium::{Medium, MediumError};
 pub use multipole::{Multipole, MultipoleError, Response};
+pub use photon_beam::PhotonBeam;
 pub use presets::{Preset, UnknownPreset};
 pub use profile::Profile;
 pub use rgb_gaussian_sum::RgbGaussianSum;
+pub use single_scattering::SingleScattering;
 pub use stack::{Stack, StackError, TissueLayer};
 
 #[cfg(test)]

@@ -64,6 +64,12 @@ pub enum MediumError {
         /// The index given.
         value: f64,
     },
+    /// Photon beams, better dipole and single scattering are worked out for tissue under something thinner.
+    #[error("refractive_index must be at least 1, got {value}")]
+    BelowAir {
+        /// The index given.
+        value: f64,
+    },
     /// A rough surface lets in a share of the light.
     #[error("rho_dt_mean of a rough surface must lie in 0 to 1, got {rho_dt_mean}")]
     RoughBoundary {

@@ -12,6 +12,7 @@ mod dipole;
 pub mod fit;
 mod gaussian_sum;
 mod grosjean;
+mod hankel;
 mod medium;
 mod multipole;
 mod photon_beam;
@@ -20,7 +21,9 @@ mod profile;
 mod rgb_gaussian_sum;
 pub mod simulate;
 mod single_scattering;
+mod source;
 mod stack;
+mod wide_beam;
 
 pub use better_dipole::BetterDipole;
 pub use boundary::Boundary;
@@ -34,7 +37,9 @@ pub use presets::{Preset, UnknownPreset};
 pub use profile::Profile;
 pub use rgb_gaussian_sum::RgbGaussianSum;
 pub use single_scattering::SingleScattering;
+pub use source::{BoxedProfile, Source, SourceError};
 pub use stack::{Stack, StackError, TissueLayer};
+pub use wide_beam::WideBeam;
 
 #[cfg(test)]
 mod oracle;

@@ -256,8 +256,10 @@ mod tests {
     #[test]
     fn a_thick_slab_is_a_half_space() {
         let medium = Medium::new(0.1, 2.0, 1.4).unwrap();
-        let (thick, half_space) =
-            (Multipole::new(&medium, 60.0, Boundary::smooth(1.4), Boundary::smooth(1.0)).unwrap(), Dipole::new(&medium).unwrap());
+        let (thick, half_space) = (
+            Multipole::new(&medium, 60.0, Boundary::smooth(1.4), Boundary::smooth(1.0)).unwrap(),
+            Dipole::new(&medium).unwrap(),
+        );
         for k in [0.0, 0.3, 2.0, 30.0] {
             // Distances to the far face round to 1e-14 mm.
             assert!((thick.spectrum(k) - half_space.spectrum(k)).abs() < 1e-13, "{k}");
@@ -305,7 +307,13 @@ mod tests {
                 Err(MultipoleError::Thickness { .. })
             ));
         }
-        assert!(matches!(Multipole::new(&medium, 1.0, Boundary::smooth(9.0), Boundary::smooth(1.4)), Err(MultipoleError::Medium(_))));
-        assert!(matches!(Multipole::new(&medium, 0.4, Boundary::smooth(1.4), Boundary::smooth(1.4)), Err(MultipoleError::TooThin { .. })));
+        assert!(matches!(
+            Multipole::new(&medium, 1.0, Boundary::smooth(9.0), Boundary::smooth(1.4)),
+            Err(MultipoleError::Medium(_))
+        ));
+        assert!(matches!(
+            Multipole::new(&medium, 0.4, Boundary::smooth(1.4), Boundary::smooth(1.4)),
+            Err(MultipoleError::TooThin { .. })
+        ));
     }
 }

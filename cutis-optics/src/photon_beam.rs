@@ -66,11 +66,12 @@ fn images_taken_back(g: &Grosjean) -> Vec<(f64, f64)> {
     let sigma_t = g.sigma_t_reduced_per_mm;
     let per_area = |r_mm: f64| {
         let depth = DEPTH / sigma_t;
-        depth * integral_over_unit(|unit| {
-            let z = unit * depth;
-            let lost = (-sigma_t * (3.0 * z + 2.0 * r_mm.hypot(z))).exp();
-            sigma_t * lost * g.image_exitance_per_mm2(z, r_mm)
-        })
+        depth
+            * integral_over_unit(|unit| {
+                let z = unit * depth;
+                let lost = (-sigma_t * (3.0 * z + 2.0 * r_mm.hypot(z))).exp();
+                sigma_t * lost * g.image_exitance_per_mm2(z, r_mm)
+            })
     };
     let mut rings = Vec::new();
     for ends in PANELS.windows(2) {
@@ -138,8 +139,7 @@ mod tests {
         // 2 pi 1e-6 r R(r), and less than 1e-4 of the light lies beyond, where its waves cancel.
         let b = beam(0.3, 0.7, 1.4);
         let k = 50.0;
-        let slow =
-            simpson(1e-6, 10.0, 20_000, |r| TAU * r * b.at_mm(r) * bessel_j0(k * r));
+        let slow = simpson(1e-6, 10.0, 20_000, |r| TAU * r * b.at_mm(r) * bessel_j0(k * r));
         assert!((b.spectrum(k) - slow).abs() < 2e-6, "{} against {slow}", b.spectrum(k));
     }
 

@@ -8,8 +8,7 @@
 //! Not modelled: single scattering, oblique light, anything closer than about one mean free path to the point lit.
 
 use crate::medium::reflection_parameter;
-use crate::{Boundary, Medium, MediumError, Profile};
-use core::f64::consts::PI;
+use crate::{Boundary, Medium, MediumError, Pole, Profile};
 
 /// Reduced albedo below which the dipole is reported as untrustworthy.
 pub const ALBEDO_REDUCED_MIN: f64 = 0.95;
@@ -85,6 +84,15 @@ impl Dipole {
         self.sigma_tr_per_mm
     }
 
+    /// The real and the virtual source.
+    fn both(&self) -> [Pole; 2] {
+        [self.depth_real_mm, self.height_virtual_mm].map(|depth_mm| Pole {
+            power: self.albedo_reduced,
+            depth_mm,
+            sigma_tr_per_mm: self.sigma_tr_per_mm,
+        })
+    }
+
     /// Whether diffusion theory may be trusted here, with the numbers to say why not.
     pub fn validity(&self) -> DiffusionValidity {
         let albedo_reduced = self.albedo_reduced;
@@ -94,13 +102,6 @@ impl Dipole {
             DiffusionValidity::Good { albedo_reduced, radius_mm: self.depth_real_mm }
         }
     }
-}
-
-/// One pole at depth z: z (1 + sigma_tr s) e^(-sigma_tr s) / (4 pi s³), s = sqrt(r² + z²).
-pub(crate) fn pole_per_mm2(sigma_tr_per_mm: f64, z_mm: f64, r_mm: f64) -> f64 {
-    let s = r_mm.hypot(z_mm);
-    let x = sigma_tr_per_mm * s;
-    z_mm * (1.0 + x) * (-x).exp() / (4.0 * PI * s * s * s)
 }
 
 impl Profile for Dipole {
@@ -113,8 +114,11 @@ impl Profile for Dipole {
 
     /// R(r) of Jensen et al. 2001: both poles.
     fn at_mm(&self, r_mm: f64) -> f64 {
-        let pole = |z_mm| pole_per_mm2(self.sigma_tr_per_mm, z_mm, r_mm);
-        self.albedo_reduced * (pole(self.depth_real_mm) + pole(self.height_virtual_mm))
+        self.both().iter().map(|pole| pole.at_mm(r_mm)).sum()
+    }
+
+    fn poles(&self) -> Option<Vec<Pole>> {
+        Some(self.both().to_vec())
     }
 }
 
@@ -123,6 +127,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use super::*;
     use crate::oracle::{hankel, simpson};
+    use core::f64::consts::PI;
     use crate::presets::measured_media::MEASURED_MEDIA;
 
     fn dipole(sigma_a: f64, sigma_s: f64, n: f64) -> Dipole {

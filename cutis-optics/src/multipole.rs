@@ -14,9 +14,8 @@
 //! Valid for l < d: a source below the slab would make the transmittance negative. Reduced albedo above 0.95, as the
 //! dipole.
 
-use crate::dipole::pole_per_mm2;
 use crate::medium::reflection_parameter;
-use crate::{Boundary, Medium, MediumError, Profile};
+use crate::{Boundary, Medium, MediumError, Pole, Profile};
 
 /// Pairs of poles on either side of the slab that are summed in the radius: what is left out is below e^(-200 sigma_tr L),
 /// and without absorption below 1e-6 of the first.
@@ -138,28 +137,50 @@ impl Multipole {
 
     /// T(r), 1/mm²: transmittance at a distance from the beam's axis, by poles.
     pub fn transmittance_at_mm(&self, r_mm: f64) -> f64 {
-        let d = self.thickness_mm;
-        self.sum_of_poles(|real, mirrored| {
-            pole_per_mm2(self.sigma_tr_per_mm, d - real, r_mm)
-                - pole_per_mm2(self.sigma_tr_per_mm, d - mirrored, r_mm)
-        })
+        far_first(POLES).flat_map(|i| self.transmittance_poles(i)).map(|pole| pole.at_mm(r_mm)).sum()
+    }
+
+    /// The slab with its faces changed.
+    pub(crate) fn upside_down(&self) -> Self {
+        Self { beyond_top_mm: self.beyond_bottom_mm, beyond_bottom_mm: self.beyond_top_mm, ..*self }
+    }
+
+    /// The i-th pair of poles of the reflectance.
+    pub(crate) fn reflectance_poles(&self, i: i32) -> [Pole; 2] {
+        let [real, mirrored] = self.sources_mm(i);
+        [self.pole(real, 1.0), self.pole(mirrored, -1.0)]
+    }
+
+    /// The i-th pair of poles of the transmittance.
+    pub(crate) fn transmittance_poles(&self, i: i32) -> [Pole; 2] {
+        let [real, mirrored] = self.sources_mm(i);
+        [self.pole(self.thickness_mm - real, 1.0), self.pole(self.thickness_mm - mirrored, -1.0)]
+    }
+
+    /// Places of the i-th real source and its mirror image, mm under the top.
+    fn sources_mm(&self, i: i32) -> [f64; 2] {
+        let shift = 2.0 * f64::from(i) * self.whole_mm();
+        [shift + self.source_depth_mm, shift - self.source_depth_mm - 2.0 * self.beyond_top_mm]
+    }
+
+    /// A source above the face it is seen from counts with the other sign.
+    fn pole(&self, z_mm: f64, sign: f64) -> Pole {
+        Pole {
+            power: self.albedo_reduced * sign * z_mm.signum(),
+            depth_mm: z_mm.abs(),
+            sigma_tr_per_mm: self.sigma_tr_per_mm,
+        }
     }
 
     /// L, mm.
-    fn whole_mm(&self) -> f64 {
+    pub(crate) fn whole_mm(&self) -> f64 {
         self.thickness_mm + self.beyond_top_mm + self.beyond_bottom_mm
     }
+}
 
-    fn sum_of_poles(&self, pair: impl Fn(f64, f64) -> f64) -> f64 {
-        let (l, whole) = (self.source_depth_mm, self.whole_mm());
-        let at = |i: i32| {
-            let shift = 2.0 * f64::from(i) * whole;
-            pair(shift + l, shift - l - 2.0 * self.beyond_top_mm)
-        };
-        // Far pairs first: small numbers before large ones.
-        let outer: f64 = (1..=POLES).rev().map(|i| at(i) + at(-i)).sum();
-        self.albedo_reduced * (outer + at(0))
-    }
+/// Numbers of pairs, those of the farthest poles first: small numbers before large ones.
+fn far_first(pairs: i32) -> impl Iterator<Item = i32> {
+    (1..=pairs).rev().flat_map(|i| [i, -i]).chain([0])
 }
 
 /// The reflectance.
@@ -169,8 +190,11 @@ impl Profile for Multipole {
     }
 
     fn at_mm(&self, r_mm: f64) -> f64 {
-        let pole = |z_mm| pole_per_mm2(self.sigma_tr_per_mm, z_mm, r_mm);
-        self.sum_of_poles(|real, mirrored| pole(real) - pole(mirrored))
+        far_first(POLES).flat_map(|i| self.reflectance_poles(i)).map(|pole| pole.at_mm(r_mm)).sum()
+    }
+
+    fn poles(&self) -> Option<Vec<Pole>> {
+        Some((-POLES..=POLES).flat_map(|i| self.reflectance_poles(i)).collect())
     }
 }
 

@@ -127,8 +127,8 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use super::*;
     use crate::oracle::{hankel, simpson};
-    use core::f64::consts::PI;
     use crate::presets::measured_media::MEASURED_MEDIA;
+    use core::f64::consts::PI;
 
     fn dipole(sigma_a: f64, sigma_s: f64, n: f64) -> Dipole {
         Dipole::new(&Medium::new(sigma_a, sigma_s, n).unwrap()).unwrap()

@@ -17,6 +17,7 @@ mod medium;
 mod multipole;
 mod photon_beam;
 mod pole;
+pub mod powers;
 pub mod presets;
 mod profile;
 mod rgb_gaussian_sum;

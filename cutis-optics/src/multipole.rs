@@ -140,6 +140,16 @@ impl Multipole {
         far_first(POLES).flat_map(|i| self.transmittance_poles(i)).map(|pole| pole.at_mm(r_mm)).sum()
     }
 
+    /// l, the depth of the real source, mm.
+    pub(crate) fn source_depth_mm(&self) -> f64 {
+        self.source_depth_mm
+    }
+
+    /// sigma_tr, 1/mm.
+    pub(crate) fn sigma_tr_per_mm(&self) -> f64 {
+        self.sigma_tr_per_mm
+    }
+
     /// The slab with its faces changed.
     pub(crate) fn upside_down(&self) -> Self {
         Self { beyond_top_mm: self.beyond_bottom_mm, beyond_bottom_mm: self.beyond_top_mm, ..*self }

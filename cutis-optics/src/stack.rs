@@ -104,6 +104,28 @@ impl Stack {
         Ok(Self { slabs, bottom, finest_mm: layers[0].medium.transport_mean_free_path_mm() })
     }
 
+    /// The slabs of finite thickness, from top to bottom.
+    pub(crate) fn slabs(&self) -> &[Multipole] {
+        &self.slabs
+    }
+
+    /// The half-space under them.
+    pub(crate) fn bottom(&self) -> Option<&Dipole> {
+        self.bottom.as_ref()
+    }
+
+    /// Shortest transport mean free path of all layers, mm.
+    pub(crate) fn shortest_mean_free_path_mm(&self) -> f64 {
+        let slabs = self.slabs.iter().map(Multipole::source_depth_mm);
+        slabs.chain(self.bottom.map(|dipole| dipole.depth_real_mm())).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Smallest sigma_tr of all layers, 1/mm: with it the profile falls far from the beam, or faster.
+    pub(crate) fn slowest_decay_per_mm(&self) -> f64 {
+        let slabs = self.slabs.iter().map(Multipole::sigma_tr_per_mm);
+        slabs.chain(self.bottom.map(|dipole| dipole.sigma_tr_per_mm())).fold(f64::INFINITY, f64::min)
+    }
+
     /// What the whole stack does to light of spatial frequency k (radians per mm).
     pub fn response(&self, k_per_mm: f64) -> Response {
         let bottom = self.bottom.map(|dipole| Response {

@@ -3,7 +3,7 @@
 //! Damping after Nielsen 1999 (report IMM-REP-1999-05, not opened) as commonly restated: the parameter follows the ratio of
 //! the gain seen to the gain expected.
 
-use super::problem::{Problem, Solution};
+use super::problem::{Derivatives, Problem, Solution};
 use nalgebra::{DMatrix, DVector};
 
 /// Steps, taken or refused, before giving up; measured profiles need 10 to 60.
@@ -16,6 +16,8 @@ const DAMPING_CALM: f64 = 1e-2;
 const STEP_MIN: f64 = 1e-7;
 /// First damping, of the largest curvature.
 const DAMPING_FIRST: f64 = 1e-3;
+/// Damping falls at most so fast, by a step as good as expected.
+const DAMPING_FALL: f64 = 0.1;
 /// Longest step of one ln v: a factor e in the variance; beyond, the quadratic model is a fairy tale.
 const STEP_MAX: f64 = 1.0;
 
@@ -25,7 +27,15 @@ pub(super) fn descend(problem: &Problem, start: Solution) -> Solution {
     let (mut damping, mut growth) = (DAMPING_FIRST, 2.0);
     let mut model = Model::new(problem, &here);
     for _ in 0..STEPS_MAX {
-        let Some(step) = model.step(damping) else { break };
+        let Some(step) = model.step(damping) else {
+            // Positive only with the first damping.
+            if damping > DAMPING_FIRST {
+                break;
+            }
+            damping *= growth;
+            growth *= 2.0;
+            continue;
+        };
         let expected = model.gain(&step);
         if step.amax() < STEP_MIN || (damping < DAMPING_CALM && expected <= GAIN_MIN * here.cost) {
             break;
@@ -34,7 +44,7 @@ pub(super) fn descend(problem: &Problem, start: Solution) -> Solution {
         match there.filter(|there| there.cost < here.cost) {
             Some(there) => {
                 let ratio = (here.cost - there.cost) / expected;
-                damping *= (1.0 - (2.0 * ratio - 1.0).powi(3)).max(1.0 / 3.0);
+                damping *= (1.0 - (2.0 * ratio - 1.0).powi(3)).max(DAMPING_FALL);
                 growth = 2.0;
                 here = there;
                 model = Model::new(problem, &here);
@@ -55,21 +65,16 @@ struct Model {
 }
 
 impl Model {
+    /// With the true curvature where that is positive, else Gauss and Newton's.
     fn new(problem: &Problem, at: &Solution) -> Self {
-        let jacobian = problem.jacobian(at);
-        let gradient = problem.gradient(at);
-        Self { gradient, curvature: jacobian.tr_mul(&jacobian) }
+        let Derivatives { gradient, curvature, gauss_newton } = problem.derivatives(at);
+        let positive = damped(&curvature, DAMPING_FIRST).cholesky().is_some();
+        Self { gradient, curvature: if positive { curvature } else { gauss_newton } }
     }
 
     /// Damped step towards the minimum of the model, limited in length; `None` once rounding has eaten the curvature.
     fn step(&self, damping: f64) -> Option<DVector<f64>> {
-        let mut damped = self.curvature.clone();
-        let largest = damped.diagonal().max();
-        for i in 0..damped.nrows() {
-            // Scale-free per parameter (Marquardt); the floor keeps terms without weight from making it singular.
-            damped[(i, i)] += damping * damped[(i, i)].max(1e-9 * largest);
-        }
-        let step = damped.cholesky()?.solve(&-&self.gradient);
+        let step = damped(&self.curvature, damping).cholesky()?.solve(&-&self.gradient);
         let length = step.amax();
         length.is_finite().then(|| step * (STEP_MAX / length.max(STEP_MAX)))
     }
@@ -78,6 +83,16 @@ impl Model {
     fn gain(&self, step: &DVector<f64>) -> f64 {
         -2.0 * self.gradient.dot(step) - step.dot(&(&self.curvature * step))
     }
+}
+
+/// Scale-free per parameter (Marquardt); the floor keeps terms without weight from making it singular.
+fn damped(curvature: &DMatrix<f64>, damping: f64) -> DMatrix<f64> {
+    let mut damped = curvature.clone();
+    let largest = damped.diagonal().amax();
+    for i in 0..damped.nrows() {
+        damped[(i, i)] += damping * damped[(i, i)].abs().max(1e-9 * largest);
+    }
+    damped
 }
 
 fn moved(problem: &Problem, ln_variances: &[f64], step: &DVector<f64>) -> Vec<f64> {

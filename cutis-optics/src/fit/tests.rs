@@ -61,8 +61,12 @@ fn energy_fit_keeps_energy_sign_and_nearly_the_error() {
                 let (kept, free) = (kept.relative_rms_power_error, free.relative_rms_power_error);
                 // A constraint can only cost; the optimiser's own slack is 1e-9.
                 assert!(kept > free * (1.0 - 1e-6), "{name} {count}: {kept} below {free}");
-                // Seen: 1.05 to 1.5 with four and more. A fit stuck in a poor minimum is off by ten or more.
-                assert!(count == 1 || kept < 1.6 * free, "{name} {count}: {kept} far above {free}");
+                // Seen: 1.05 to 1.5 with four and more. A fit stuck in a poor minimum is off by ten or more. Below 1e-5 the
+                // heavy row of the energy leaves nothing to see: its square, 1e6, times rounding is 1e-10 of the cost.
+                assert!(
+                    count == 1 || kept < 1.6 * free || kept < 1e-5,
+                    "{name} {count}: {kept} far above {free}"
+                );
             }
         }
     }

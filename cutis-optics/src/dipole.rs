@@ -8,6 +8,7 @@
 //! Not modelled: single scattering, oblique light, anything closer than about one mean free path to the point lit.
 
 use crate::medium::reflection_parameter;
+use crate::powers::{Powers, PowersSettings, of_half_space};
 use crate::{Boundary, Medium, MediumError, Pole, Profile};
 
 /// Reduced albedo below which the dipole is reported as untrustworthy.
@@ -85,7 +86,7 @@ impl Dipole {
     }
 
     /// The real and the virtual source.
-    fn both(&self) -> [Pole; 2] {
+    pub(crate) fn both(&self) -> [Pole; 2] {
         [self.depth_real_mm, self.height_virtual_mm].map(|depth_mm| Pole {
             power: self.albedo_reduced,
             depth_mm,
@@ -119,6 +120,10 @@ impl Profile for Dipole {
 
     fn poles(&self) -> Option<Vec<Pole>> {
         Some(self.both().to_vec())
+    }
+
+    fn powers(&self) -> Option<Powers> {
+        Some(of_half_space(self, &PowersSettings::for_half_space(self)))
     }
 }
 

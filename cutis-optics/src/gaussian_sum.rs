@@ -81,6 +81,54 @@ impl GaussianSum {
         Self { terms: merged }
     }
 
+    /// At most `count` terms: where there are more, each becomes a mixture of its two neighbours in a sparser set that keeps
+    /// its weight and its variance (d'Eon, Luebke & Enderton 2007, section 5.1). The set is a geometric sequence from the
+    /// variance below which a hundredth of the weight lies to that beyond which a thousandth does; what little lies outside
+    /// is taken by its ends.
+    pub fn sparse(&self, count: usize) -> Self {
+        if self.terms.len() <= count || count == 0 {
+            return self.clone();
+        }
+        let (from, to) = (self.quantile_mm2(0.01), self.quantile_mm2(0.999));
+        let place = |i: usize| if count == 1 { 1.0 } else { i as f64 / (count - 1) as f64 };
+        let variances: Vec<f64> = (0..count).map(|i| from * (to / from).powf(place(i))).collect();
+        self.on_variances(&variances)
+    }
+
+    /// The same weight and variance, term by term, on given variances (mm², growing). A term outside their range becomes the
+    /// first or the last of them and keeps its weight only.
+    ///
+    /// # Panics
+    /// If there are no variances.
+    pub fn on_variances(&self, variances_mm2: &[f64]) -> Self {
+        let mut terms: Vec<Gaussian> =
+            variances_mm2.iter().map(|&variance_mm2| Gaussian { weight: 0.0, variance_mm2 }).collect();
+        let last = terms.len() - 1;
+        for &Gaussian { weight, variance_mm2 } in &self.terms {
+            let upper = variances_mm2.partition_point(|&v| v <= variance_mm2);
+            if upper == 0 || upper > last {
+                terms[upper.min(last)].weight += weight;
+                continue;
+            }
+            let (a, b) = (variances_mm2[upper - 1], variances_mm2[upper]);
+            let share = (variance_mm2 - a) / (b - a);
+            terms[upper - 1].weight += weight * (1.0 - share);
+            terms[upper].weight += weight * share;
+        }
+        Self { terms }
+    }
+
+    /// The variance below which a share of all weight (signs left out) lies, mm².
+    fn quantile_mm2(&self, share: f64) -> f64 {
+        let all: f64 = self.terms.iter().map(|g| g.weight.abs()).sum();
+        let mut below = 0.0;
+        let first = self.terms.iter().find(|g| {
+            below += g.weight.abs();
+            below >= share * all
+        });
+        first.or(self.terms.last()).map_or(0.0, |g| g.variance_mm2)
+    }
+
     /// Sum of all weights: the energy.
     pub fn energy(&self) -> f64 {
         self.terms.iter().map(|g| g.weight).sum()
@@ -165,6 +213,27 @@ mod tests {
         let moment = |s: &GaussianSum| s.terms.iter().map(|g| g.weight * g.variance_mm2).sum::<f64>();
         assert!((m.energy() - 1.0).abs() < 4.0 * f64::EPSILON);
         assert!((moment(&m) - moment(&s)).abs() < 8.0 * f64::EPSILON);
+    }
+
+    #[test]
+    fn a_sparser_set_keeps_weight_and_variance() {
+        let dense =
+            sum(&[(0.05, 0.1), (0.3, 0.2), (0.2, 0.5), (0.1, 0.9), (0.05, 1.7), (-0.02, 2.0), (0.1, 4.0)]);
+        for count in [2, 3, 5] {
+            let sparse = dense.sparse(count);
+            assert_eq!(sparse.terms.len(), count);
+            let moment = |s: &GaussianSum| s.terms.iter().map(|g| g.weight * g.variance_mm2).sum::<f64>();
+            assert!((sparse.energy() - dense.energy()).abs() < 1e-15);
+            assert!((moment(&sparse) - moment(&dense)).abs() < 1e-14, "{count}");
+        }
+        assert_eq!(dense.sparse(7), dense);
+        assert!((dense.sparse(1).energy() - dense.energy()).abs() < 1e-15);
+        // On its own variances it is itself; what lies outside goes to the ends.
+        let own: Vec<f64> = dense.terms.iter().map(|g| g.variance_mm2).collect();
+        assert_eq!(dense.on_variances(&own), dense);
+        let ends = dense.on_variances(&[0.3, 1.0]);
+        assert!((ends.energy() - dense.energy()).abs() < 1e-15);
+        assert!(ends.terms[0].weight > 0.35, "{ends:?}");
     }
 
     proptest! {

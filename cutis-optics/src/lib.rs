@@ -30,7 +30,10 @@ mod wide_beam;
 pub use better_dipole::BetterDipole;
 pub use boundary::Boundary;
 pub use dipole::{DiffusionValidity, Dipole};
-pub use fit::{Fit, FitError, FitMethod, RgbFit, fit, fit_rgb, relative_rms_power_error, rgb_kernel};
+pub use fit::{
+    Fit, FitError, FitMethod, FitSettings, JointFit, RgbFit, WorstError, fit, fit_joint, fit_rgb,
+    fit_weights, fit_with, relative_rms_power_error, rgb_kernel, worst_absolute_error,
+};
 pub use gaussian_sum::{Gaussian, GaussianSum};
 pub use medium::{Medium, MediumError};
 pub use multipole::{Multipole, MultipoleError, Response};

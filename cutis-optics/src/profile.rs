@@ -5,6 +5,7 @@
 //! F(k) = 2 pi ∫ f(r) J0(k r) r dr: convolution over the plane becomes multiplication, F(0) is the total.
 
 use crate::Pole;
+use crate::powers::Powers;
 
 /// A radially symmetric diffusion profile, normal incidence, flat surface.
 pub trait Profile {
@@ -17,6 +18,12 @@ pub trait Profile {
     /// The poles the profile is made of, where it is. What has poles can be fitted
     /// without optimisation ([`crate::FitMethod::Fast`]).
     fn poles(&self) -> Option<Vec<Pole>> {
+        None
+    }
+
+    /// The profile as powers of one Gaussian with the usual settings, where poles and layers allow it
+    /// ([`crate::FitMethod::Powers`]).
+    fn powers(&self) -> Option<Powers> {
         None
     }
 

@@ -2,9 +2,10 @@
 //!
 //! Which to trust when: `docs/profiles.md` of the project, with errors against Monte Carlo.
 
+use crate::powers::Powers;
 use crate::{
-    BetterDipole, Dipole, Medium, MediumError, PhotonBeam, Profile, SingleScattering, Stack, StackError,
-    TissueLayer,
+    BetterDipole, Dipole, Medium, MediumError, PhotonBeam, Pole, Profile, SingleScattering, Stack,
+    StackError, TissueLayer,
 };
 use core::fmt;
 use core::str::FromStr;
@@ -121,6 +122,14 @@ impl Profile for BoxedProfile {
 
     fn at_mm(&self, r_mm: f64) -> f64 {
         (**self).at_mm(r_mm)
+    }
+
+    fn poles(&self) -> Option<Vec<Pole>> {
+        (**self).poles()
+    }
+
+    fn powers(&self) -> Option<Powers> {
+        (**self).powers()
     }
 
     fn total(&self) -> f64 {

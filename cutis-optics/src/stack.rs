@@ -9,6 +9,7 @@
 
 use crate::hankel::inverse_hankel;
 use crate::multipole::{MultipoleError, Response};
+use crate::powers::{Powers, PowersSettings};
 use crate::{Boundary, Dipole, Medium, Multipole, Profile};
 
 /// One layer of a stack.
@@ -166,6 +167,11 @@ impl Profile for Stack {
 
     fn at_mm(&self, r_mm: f64) -> f64 {
         self.inverse_hankel(r_mm, |k| self.spectrum(k))
+    }
+
+    fn powers(&self) -> Option<Powers> {
+        let fit = self.as_powers(&PowersSettings::for_stack(self));
+        Some(fit.expect("the usual settings are possible").reflectance)
     }
 }
 

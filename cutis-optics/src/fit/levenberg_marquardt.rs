@@ -4,6 +4,7 @@
 //! the gain seen to the gain expected.
 
 use super::problem::{Derivatives, Problem, Solution};
+use super::seven_tap::SevenTap;
 use nalgebra::{DMatrix, DVector};
 
 /// Steps, taken or refused, before giving up; measured profiles need 10 to 60.
@@ -27,7 +28,7 @@ pub(super) fn descend(problem: &Problem, start: Solution) -> Solution {
     let (mut damping, mut growth) = (DAMPING_FIRST, 2.0);
     let mut model = Model::new(problem, &here);
     for _ in 0..STEPS_MAX {
-        let Some(step) = model.step(damping) else {
+        let Some(step) = model.step(damping, problem.limits(), &here.ln_variances) else {
             // Positive only with the first damping.
             if damping > DAMPING_FIRST {
                 break;
@@ -73,8 +74,12 @@ impl Model {
     }
 
     /// Damped step towards the minimum of the model, limited in length; `None` once rounding has eaten the curvature.
-    fn step(&self, damping: f64) -> Option<DVector<f64>> {
-        let step = damped(&self.curvature, damping).cholesky()?.solve(&-&self.gradient);
+    fn step(&self, damping: f64, limits: Option<SevenTap>, at: &[f64]) -> Option<DVector<f64>> {
+        let damped = damped(&self.curvature, damping);
+        let step = match limits {
+            Some(limits) => limits.step(at, &self.gradient, &damped)?,
+            None => damped.cholesky()?.solve(&-&self.gradient),
+        };
         let length = step.amax();
         length.is_finite().then(|| step * (STEP_MAX / length.max(STEP_MAX)))
     }
@@ -96,8 +101,8 @@ fn damped(curvature: &DMatrix<f64>, damping: f64) -> DMatrix<f64> {
 }
 
 fn moved(problem: &Problem, ln_variances: &[f64], step: &DVector<f64>) -> Vec<f64> {
-    let (low, high) = problem.grid().variance_range_mm2();
-    ln_variances.iter().zip(step.iter()).map(|(v, s)| (v + s).clamp(low.ln(), high.ln())).collect()
+    let there: Vec<f64> = ln_variances.iter().zip(step.iter()).map(|(v, s)| v + s).collect();
+    problem.allowed(&there)
 }
 
 #[cfg(test)]

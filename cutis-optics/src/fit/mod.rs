@@ -6,15 +6,17 @@
 //!
 //! How: Levenberg–Marquardt over ln v; for given variances the best weights are a linear problem and are eliminated
 //! (variable projection, Golub & Pereyra 1973, doi:10.1137/0710036, not opened). The landscape has local minima: a
-//! deterministic grid of geometric sequences is screened and the best few starts are run to the end.
+//! coarse grid of geometric sequences is screened, and the best start is run to the end; scattered starts find nothing better.
 //!
 //! The residual is summed over a quadrature in k rather than expanded into Gaussian–Gaussian inner products: those have a
 //! closed form, but an error of 1e-6 would be the difference of numbers equal to twelve digits.
 
+mod fast;
 mod frequency_grid;
+mod joint;
 mod levenberg_marquardt;
 mod problem;
-mod rgb;
+mod seven_tap;
 mod starts;
 mod weights;
 
@@ -22,12 +24,12 @@ use crate::{Gaussian, GaussianSum, MediumError, Profile};
 use frequency_grid::FrequencyGrid;
 use problem::{Problem, Solution};
 
-pub use rgb::{RgbFit, fit_rgb, rgb_kernel};
+pub use joint::{JointFit, RgbFit, fit_joint, fit_rgb, fit_weights, rgb_kernel};
 
 /// Most Gaussians that a fit accepts: past this the sum reaches rounding error for every measured profile.
 pub const GAUSSIANS_MAX: usize = 16;
 
-/// What the sum must keep.
+/// How a sum is found, and what it must keep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FitMethod {
@@ -35,6 +37,23 @@ pub enum FitMethod {
     Optimal,
     /// Σ w = R_d exactly (eq. 9) and no weight negative: what a renderer should use.
     Energy,
+    /// Four Gaussians for every pole, by the formulas of appendix A: no optimisation, errors of percents. Only for profiles
+    /// that have poles ([`Profile::poles`]).
+    Fast,
+    /// Multiples of one variance ([`crate::powers`]): layers combined as polynomials. Only for dipoles, slabs and stacks.
+    Powers,
+}
+
+/// What a fit is to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FitSettings {
+    /// Most terms.
+    pub gaussians: usize,
+    /// How to find them.
+    pub method: FitMethod,
+    /// Shortest mean free path of the material, mm, where the sum is for a chain of seven-tap blurs: v_1 ≤ l² and
+    /// v_i ≤ 4 v_(i-1) (section 5.1). Only with [`FitMethod::Optimal`] and [`FitMethod::Energy`].
+    pub seven_tap_mm: Option<f64>,
 }
 
 /// A fitted profile.
@@ -42,7 +61,8 @@ pub enum FitMethod {
 pub struct Fit {
     /// How it was fitted.
     pub method: FitMethod,
-    /// The terms, by growing variance. Under [`FitMethod::Energy`] those that got no weight are left out.
+    /// The terms, by growing variance. Under [`FitMethod::Energy`] those that got no weight are left out, unless the sum is
+    /// for a chain of blurs.
     pub sum: GaussianSum,
     /// Relative RMS power error, eq. 10, no unit.
     pub relative_rms_power_error: f64,
@@ -79,6 +99,32 @@ pub enum FitError {
         /// The number asked for.
         count: usize,
     },
+    /// A variance that cannot be.
+    #[error("variances must be finite and above 0 mm², got {value}")]
+    Variance {
+        /// What was given, mm².
+        value: f64,
+    },
+    /// A mean free path that cannot be.
+    #[error("the mean free path for seven taps must be finite and above 0 mm, got {value}")]
+    MeanFreePath {
+        /// What was given, mm.
+        value: f64,
+    },
+    /// The method takes its variances or weights from formulas.
+    #[error("the method {method:?} leaves nothing to choose: Optimal and Energy do")]
+    NoChoice {
+        /// The method asked for.
+        method: FitMethod,
+    },
+    /// The method builds on the poles of a profile.
+    #[error(
+        "the method {method:?} has to know the poles a profile is made of, and this one tells none; Energy needs none"
+    )]
+    Unknown {
+        /// The method asked for.
+        method: FitMethod,
+    },
     /// The medium itself is impossible.
     #[error("channel {channel} (0 red, 1 green, 2 blue)")]
     Medium {
@@ -89,12 +135,73 @@ pub enum FitError {
     },
 }
 
-/// The best sum of `gaussians` terms for one profile.
+/// A sum of at most `gaussians` terms for one profile.
+///
+/// [`FitMethod::Fast`] and [`FitMethod::Powers`] give as many terms as they have, and where these are too many, a sparser set
+/// ([`GaussianSum::sparse`]).
+///
+/// # Errors
+/// If the number is out of range, the profile has no total or scale, or the method does not know what it is made of.
 pub fn fit(profile: &dyn Profile, gaussians: usize, method: FitMethod) -> Result<Fit, FitError> {
+    fit_with(profile, &FitSettings { gaussians, method, seven_tap_mm: None })
+}
+
+/// As [`fit`], with all there is to set.
+///
+/// # Errors
+/// As [`fit`]; or if the mean free path is not above 0, or given to a method that chooses no variances.
+pub fn fit_with(profile: &dyn Profile, settings: &FitSettings) -> Result<Fit, FitError> {
+    let &FitSettings { gaussians, method, seven_tap_mm } = settings;
     check_count(gaussians)?;
-    let problem = Problem::new(&[profile], method)?;
-    let solution = starts::best_solution(&problem, gaussians)?;
-    Ok(into_fit(&problem, solution, profile, method))
+    if let Some(value) = seven_tap_mm.filter(|l| !(*l > 0.0 && l.is_finite())) {
+        return Err(FitError::MeanFreePath { value });
+    }
+    let sum = match method {
+        FitMethod::Optimal | FitMethod::Energy => {
+            let mut problem = Problem::new(&[profile], method)?;
+            problem.limit(seven_tap_mm);
+            let solution = starts::best_solution(&problem, gaussians)?;
+            return Ok(into_fit(&problem, solution, profile, method));
+        }
+        _ if seven_tap_mm.is_some() => return Err(FitError::NoChoice { method }),
+        FitMethod::Fast => profile.poles().map(|poles| fast::fast(&poles)),
+        FitMethod::Powers => profile.powers().map(|powers| powers.sum()),
+    };
+    let sum = sum.ok_or(FitError::Unknown { method })?.sparse(gaussians);
+    Ok(Fit {
+        method,
+        relative_rms_power_error: relative_rms_power_error(profile, &sum)?,
+        energy: sum.energy(),
+        total_diffuse_reflectance: profile.total(),
+        sum,
+    })
+}
+
+/// Largest |R(r) - Σ w G| over the plane, 1/mm², and where, mm: on 200 radii from the point lit to where a hundred times the
+/// profile's own scale is passed.
+///
+/// # Errors
+/// If the profile has no total or scale.
+pub fn worst_absolute_error(profile: &dyn Profile, sum: &GaussianSum) -> Result<WorstError, FitError> {
+    const RADII: i32 = 200;
+    let (half_per_mm, _) = FrequencyGrid::covering(&[profile])?.k_half_range_per_mm();
+    // From a thousandth of the scale 1/k_half on, evenly in the logarithm.
+    let radius_mm = |i: i32| (f64::from(i) / f64::from(RADII - 1) * 1e5f64.ln()).exp() * 1e-3 / half_per_mm;
+    let errors = (0..RADII).map(|i| {
+        let r_mm = radius_mm(i);
+        WorstError { r_mm, error_per_mm2: (profile.at_mm(r_mm) - sum.at_mm(r_mm)).abs() }
+    });
+    let worst = errors.max_by(|a, b| a.error_per_mm2.total_cmp(&b.error_per_mm2));
+    Ok(worst.expect("there are radii"))
+}
+
+/// Where a sum misses a profile most.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct WorstError {
+    /// Distance from the point lit, mm.
+    pub r_mm: f64,
+    /// By how much it misses, 1/mm².
+    pub error_per_mm2: f64,
 }
 
 /// Relative RMS power error (eq. 10) of any sum against any profile, no unit.
@@ -111,7 +218,9 @@ fn into_fit(problem: &Problem, solution: Solution, profile: &dyn Profile, method
     let term = |(weight, variance_mm2): (f64, f64)| Gaussian { weight, variance_mm2 };
     let weights = problem.weights(&solution, 0);
     let terms = weights.into_iter().zip(solution.variances_mm2()).map(term);
-    let sum = GaussianSum::new(terms.filter(|g| g.weight != 0.0).collect());
+    // A chain of blurs goes through every variance, also those that no weight asks for.
+    let chained = problem.limits().is_some();
+    let sum = GaussianSum::new(terms.filter(|g| chained || g.weight != 0.0).collect());
     Fit {
         method,
         relative_rms_power_error: problem.grid().relative_error(profile, &sum),

@@ -6,6 +6,7 @@
 use super::FitError;
 use super::FitMethod;
 use super::frequency_grid::FrequencyGrid;
+use super::seven_tap::SevenTap;
 use super::weights::{LeastSquares, SignRule, dot, solve};
 use crate::Profile;
 use nalgebra::{DMatrix, DVector};
@@ -20,6 +21,7 @@ pub(super) struct Problem {
     grid: FrequencyGrid,
     method: FitMethod,
     targets: Vec<Target>,
+    limits: Option<SevenTap>,
 }
 
 struct Target {
@@ -65,13 +67,13 @@ impl Problem {
     pub(super) fn new(profiles: &[&dyn Profile], method: FitMethod) -> Result<Self, FitError> {
         let grid = FrequencyGrid::covering(profiles)?;
         let targets = profiles.iter().map(|p| Target::new(*p, &grid, method)).collect();
-        Ok(Self { grid, method, targets })
+        Ok(Self { grid, method, targets, limits: None })
     }
 
     /// The same on fewer nodes, with free weights.
     pub(super) fn thinned(&self) -> Self {
         let targets = self.targets.iter().map(Target::thinned).collect();
-        Self { grid: self.grid.thinned(), method: FitMethod::Optimal, targets }
+        Self { grid: self.grid.thinned(), method: FitMethod::Optimal, targets, limits: self.limits }
     }
 
     /// Smallest and largest ln v (mm²) worth starting from: 0.0025 to 1100 times 1/k_half² where all channels are alike,
@@ -82,15 +84,32 @@ impl Problem {
         (unit(high) - 6.0, unit(low) + 7.0)
     }
 
+    /// Bounds the variances to what seven taps can do, for a shortest mean free path (mm).
+    pub(super) fn limit(&mut self, mean_free_path_mm: Option<f64>) {
+        self.limits = mean_free_path_mm.map(|l| SevenTap { ln_first_mm2: 2.0 * l.ln() });
+    }
+
+    pub(super) fn limits(&self) -> Option<SevenTap> {
+        self.limits
+    }
+
+    pub(super) fn method(&self) -> FitMethod {
+        self.method
+    }
+
+    /// The nearest variances (ln) that the grid can tell apart and the limits allow.
+    pub(super) fn allowed(&self, ln_variances: &[f64]) -> Vec<f64> {
+        let (low, high) = self.grid.variance_range_mm2();
+        let seen: Vec<f64> = ln_variances.iter().map(|v| v.clamp(low.ln(), high.ln())).collect();
+        self.limits.map_or(seen.clone(), |limits| limits.allowed(&seen))
+    }
+
     pub(super) fn grid(&self) -> &FrequencyGrid {
         &self.grid
     }
 
     fn sign_rule(&self) -> SignRule {
-        match self.method {
-            FitMethod::Optimal => SignRule::Free,
-            FitMethod::Energy => SignRule::NotNegative,
-        }
+        if self.method == FitMethod::Energy { SignRule::NotNegative } else { SignRule::Free }
     }
 
     /// The best weights for these variances, and what error they leave.
@@ -176,10 +195,7 @@ impl Problem {
 impl Target {
     fn new(profile: &dyn Profile, grid: &FrequencyGrid, method: FitMethod) -> Self {
         let (norm, total) = (grid.norm(|k| profile.spectrum(k)), profile.total());
-        let energy_row = match method {
-            FitMethod::Optimal => 0.0,
-            FitMethod::Energy => ENERGY * norm / total,
-        };
+        let energy_row = if method == FitMethod::Energy { ENERGY * norm / total } else { 0.0 };
         let b = with_first_row(energy_row * total / norm, grid, |k| profile.spectrum(k) / norm);
         Self { b, energy_row, norm, total }
     }

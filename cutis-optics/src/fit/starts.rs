@@ -29,7 +29,8 @@ pub(super) fn best_solution(problem: &Problem, gaussians: usize) -> Result<Solut
     let thinned = problem.thinned();
     let judged = |places| {
         let sequences = sequences(problem, gaussians, places);
-        let mut starts: Vec<Solution> = sequences.iter().filter_map(|s| thinned.solve(s)).collect();
+        let mut starts: Vec<Solution> =
+            sequences.iter().filter_map(|s| thinned.solve(&problem.allowed(s))).collect();
         starts.sort_by(by_cost);
         starts
     };

@@ -2,7 +2,7 @@
 use super::*;
 use crate::oracle::simpson;
 use crate::presets::measured_media::MEASURED_MEDIA;
-use crate::{Dipole, Medium};
+use crate::{Dipole, Medium, Stack, TissueLayer};
 use proptest::prelude::*;
 
 fn dipole(sigma_a: f64, sigma_s: f64, n: f64) -> Dipole {
@@ -120,6 +120,83 @@ fn joint_fit_of_equal_channels_is_the_single_fit() {
         let ratio = joint.relative_rms_power_error[c] / alone.relative_rms_power_error;
         assert!((ratio - 1.0).abs() < 1e-6, "{ratio}");
     }
+}
+
+/// Eight wavelengths of one skin, say: absorption from strong to weak.
+fn eight_dipoles() -> Vec<Dipole> {
+    (0..8).map(|i| dipole(0.02 * 1.7_f64.powi(i), 1.0 - 0.05 * f64::from(i), 1.4)).collect()
+}
+
+#[test]
+fn any_number_of_wavelengths_share_variances() {
+    let dipoles = eight_dipoles();
+    let profiles: Vec<&dyn Profile> = dipoles.iter().map(|d| d as &dyn Profile).collect();
+    let f = fit_joint(&profiles, 8).unwrap();
+    assert!(f.variances_mm2.len() <= 8 && f.variances_mm2.windows(2).all(|v| v[0] < v[1]));
+    for (i, d) in dipoles.iter().enumerate() {
+        assert!((f.energy[i] / d.total() - 1.0).abs() < 16.0 * f64::EPSILON, "{i}");
+        assert!(f.weights[i].iter().all(|&w| w >= 0.0), "{i}");
+        // What is reported is what is had.
+        let again = relative_rms_power_error(d, &f.sum(i)).unwrap();
+        assert!((again / f.relative_rms_power_error[i] - 1.0).abs() < 1e-6, "{i}: {again}");
+        let alone = fit(d, 8, FitMethod::Energy).unwrap().relative_rms_power_error;
+        assert!(f.relative_rms_power_error[i] > alone * (1.0 - 1e-6), "{i} beats its own fit");
+        // Seen: 0.8 % at worst.
+        assert!(f.relative_rms_power_error[i] < 0.02, "{i}: {}", f.relative_rms_power_error[i]);
+    }
+}
+
+#[test]
+fn given_variances_get_the_weights_that_the_fit_had_chosen() {
+    let d = dipole(0.17, 0.88, 1.3);
+    for method in [FitMethod::Optimal, FitMethod::Energy] {
+        let chosen = fit(&d, 5, method).unwrap();
+        let variances: Vec<f64> = chosen.sum.terms.iter().map(|g| g.variance_mm2).collect();
+        let given = fit_weights(&[&d], &variances, method).unwrap();
+        for (term, weight) in chosen.sum.terms.iter().zip(&given.weights[0]) {
+            assert!((term.weight - weight).abs() < 1e-9, "{method:?}: {} {weight}", term.weight);
+        }
+    }
+    // Variances far too wide next to good ones get nothing, and no weight turns negative.
+    let spread = fit_weights(&[&d], &[0.01, 0.05, 0.3, 1.5, 8.0, 500.0, 3e4], FitMethod::Energy).unwrap();
+    assert!(spread.weights[0].iter().all(|&w| w >= 0.0) && spread.variances_mm2.last() < Some(&3e4));
+    assert!((spread.energy[0] / d.total() - 1.0).abs() < 16.0 * f64::EPSILON);
+    let told = |v: &[f64], method| fit_weights(&[&d], v, method).unwrap_err().to_string();
+    assert!(told(&[0.1, -1.0], FitMethod::Energy).contains("above 0 mm², got -1"));
+    assert!(told(&[0.1], FitMethod::Fast).contains("nothing to choose"));
+}
+
+#[test]
+fn powers_are_a_method_like_any_other() {
+    let layer = |a, s, n, thickness_mm| TissueLayer { medium: Medium::new(a, s, n).unwrap(), thickness_mm };
+    let stack = Stack::in_air(&[layer(0.3, 6.0, 1.4, 0.3), layer(0.1, 3.0, 1.38, f64::INFINITY)]).unwrap();
+    let half_space = dipole(0.17, 0.88, 1.4);
+    for (profile, limit) in [(&stack as &dyn Profile, 0.05), (&half_space, 0.05)] {
+        let f = fit(profile, 12, FitMethod::Powers).unwrap();
+        assert_eq!(f.sum.terms.len(), 12);
+        // Eq. 13 leaves 1e-4 out.
+        assert!((f.energy - profile.total()).abs() < 1.1e-4, "{}", f.energy);
+        assert!(f.relative_rms_power_error < limit, "{}", f.relative_rms_power_error);
+    }
+    // A sum of Gaussians does not say what it is made of.
+    let sum = fit(&half_space, 3, FitMethod::Energy).unwrap().sum;
+    for method in [FitMethod::Fast, FitMethod::Powers] {
+        let told = fit(&sum, 3, method).unwrap_err().to_string();
+        assert!(told.contains("Energy needs none"), "{told}");
+    }
+}
+
+#[test]
+fn the_worst_error_is_found_where_it_is() {
+    // Two Gaussians against one: the difference 0.3 (G(0.01) - G(1)) is largest at the centre.
+    let term = |weight, variance_mm2| Gaussian { weight, variance_mm2 };
+    let sharp = GaussianSum::new(vec![term(0.3, 0.01), term(0.7, 1.0)]);
+    let blunt = GaussianSum::new(vec![term(1.0, 1.0)]);
+    let worst = worst_absolute_error(&sharp, &blunt).unwrap();
+    let exact = 0.3 * (100.0 - 1.0) / core::f64::consts::TAU;
+    // The first radius is a thousandth of the profile's scale.
+    assert!((worst.error_per_mm2 / exact - 1.0).abs() < 1e-3, "{worst:?} against {exact}");
+    assert!(worst.r_mm < 0.01);
 }
 
 #[test]

@@ -19,18 +19,26 @@ pub struct PowersSettings {
 }
 
 impl PowersSettings {
+    /// Settings for a half-space, as for a stack of nothing else.
+    pub fn for_half_space(dipole: &Dipole) -> Self {
+        Self::for_lengths(dipole.depth_real_mm(), dipole.sigma_tr_per_mm())
+    }
+
     /// Settings for a stack: the unit is a tenth of the square of the shortest mean free path, so that the nearest source is
     /// met to 2 e^(-sqrt(20 pi)) = 0.07 %, and the terms reach to where 1 % of the slowest decay is left, as far as 448 go.
     /// For skin the result is within 0.7 % (relative RMS power error); more terms and a finer unit make it as exact as one
     /// likes.
     pub fn for_stack(stack: &Stack) -> Self {
+        Self::for_lengths(stack.shortest_mean_free_path_mm(), stack.slowest_decay_per_mm())
+    }
+
+    fn for_lengths(mean_free_path_mm: f64, slowest_decay_per_mm: f64) -> Self {
         const UNITS_PER_MEAN_FREE_PATH_2: f64 = 10.0;
         const REACH_EXPONENT: f64 = 4.6;
         // Time grows with the square of it.
         const TERMS: f64 = 448.0;
-        let unit_mm2 = stack.shortest_mean_free_path_mm().powi(2) / UNITS_PER_MEAN_FREE_PATH_2;
-        let slowest = stack.slowest_decay_per_mm();
-        let reach_mm2 = 2.0 * REACH_EXPONENT / (slowest * slowest);
+        let unit_mm2 = mean_free_path_mm * mean_free_path_mm / UNITS_PER_MEAN_FREE_PATH_2;
+        let reach_mm2 = 2.0 * REACH_EXPONENT / (slowest_decay_per_mm * slowest_decay_per_mm);
         let terms_max = (reach_mm2 / unit_mm2).clamp(16.0, TERMS) as usize;
         Self { unit_mm2, terms_max, epsilon: 1e-4 }
     }
@@ -73,7 +81,7 @@ impl Stack {
     ///
     /// # Errors
     /// If the unit is not above 0, there are no terms or more than 65536, or epsilon does not lie in (0, 1).
-    pub fn powers(&self, settings: &PowersSettings) -> Result<PowersFit, PowersError> {
+    pub fn as_powers(&self, settings: &PowersSettings) -> Result<PowersFit, PowersError> {
         settings.check()?;
         let slabs = self.slabs().iter().rev().map(|slab| Part::of_slab(slab, settings));
         let bottom = self.bottom().map(|dipole| Part::of_half_space(dipole, settings));
@@ -153,6 +161,13 @@ impl Part {
     }
 }
 
+/// Reflectance of a half-space.
+pub(crate) fn of_half_space(dipole: &Dipole, settings: &PowersSettings) -> Powers {
+    let poles = dipole.both();
+    let beyond = |v: f64| poles.iter().map(|pole| pole.weight_beyond(v)).sum();
+    Powers::of_poles(settings.unit_mm2, settings.terms_max, |_| poles, beyond, dipole.total())
+}
+
 /// X + X² + … + X^n, with n the first for which what is left out of the whole series, times `energy`, is below epsilon
 /// (eq. 13).
 fn to_and_fro(x: &Powers, energy: f64, settings: &PowersSettings) -> (Powers, usize) {
@@ -225,7 +240,7 @@ mod tests {
         for epsilon in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {
             let usual = PowersSettings { epsilon, ..PowersSettings::for_stack(&skin) };
             let fine = PowersSettings { unit_mm2: finest / 16.0, terms_max: 1536, epsilon };
-            let [usual, fine] = [usual, fine].map(|settings| skin.powers(&settings).unwrap());
+            let [usual, fine] = [usual, fine].map(|settings| skin.as_powers(&settings).unwrap());
             let error = |fit: &PowersFit| relative_rms_power_error(&skin, &fit.reflectance.sum()).unwrap();
             let missing = skin.total() - usual.reflectance.energy();
             eprintln!(
@@ -252,7 +267,7 @@ mod tests {
         let layers = [layer(0.3, 6.0, 1.4, 0.4), layer(0.1, 3.0, 1.38, 1.5), layer(0.2, 4.0, 1.44, 1.0)];
         let stack = Stack::in_air(&layers).unwrap();
         let unit_mm2 = stack.shortest_mean_free_path_mm().powi(2) / 20.0;
-        let fit = stack.powers(&PowersSettings { unit_mm2, terms_max: 4096, epsilon: 1e-9 }).unwrap();
+        let fit = stack.as_powers(&PowersSettings { unit_mm2, terms_max: 4096, epsilon: 1e-9 }).unwrap();
         assert_eq!(fit.reflections.len(), 2);
         let (r, t) = (fit.reflectance.sum(), fit.transmittance.sum());
         for k in [0.0, 0.5, 2.0, 6.0] {
@@ -267,7 +282,7 @@ mod tests {
     fn impossible_settings_are_refused() {
         let skin = skin_at_500_nm();
         let good = PowersSettings::for_stack(&skin);
-        let told = |settings| skin.powers(&settings).unwrap_err().to_string();
+        let told = |settings| skin.as_powers(&settings).unwrap_err().to_string();
         assert!(told(PowersSettings { unit_mm2: 0.0, ..good }).contains("unit_mm2 must be above 0"));
         assert!(told(PowersSettings { terms_max: 0, ..good }).contains("terms_max must be 1 to 65536"));
         assert!(

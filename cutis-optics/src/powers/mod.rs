@@ -11,6 +11,7 @@
 
 mod layers;
 
+pub(crate) use layers::of_half_space;
 pub use layers::{PowersError, PowersFit, PowersSettings};
 
 use crate::{Gaussian, GaussianSum, Pole};

@@ -32,7 +32,7 @@ pub(super) fn chi_square_is_plausible(counts: &[u64], shares: &[f64]) {
     assert!(deviations < 4.3, "chi² {chi2} at {degrees} degrees of freedom");
 }
 
-fn layer(sigma_a: f64, sigma_s: f64, g: f64, n: f64, thickness_mm: f64) -> Layer {
+pub(super) fn layer(sigma_a: f64, sigma_s: f64, g: f64, n: f64, thickness_mm: f64) -> Layer {
     Layer { sigma_a_per_mm: sigma_a, sigma_s_per_mm: sigma_s, g, refractive_index: n, thickness_mm }
 }
 
@@ -110,6 +110,38 @@ fn single_scattering_meets_its_integral() {
     let estimates = run(vec![layer(sigma_a, sigma_s, 0.0, 1.0, f64::INFINITY)], 4 * PACKETS);
     let expected = 0.5 * sigma_s / (sigma_a + sigma_s) * simpson(0.0, 1.0, 1000, |mu| mu / (mu + 1.0));
     meets("R", estimates.diffuse_reflectance(), expected, 2e-3 * expected);
+}
+
+#[test]
+fn clear_layers_change_nothing_but_where_light_leaves() {
+    // Matched clear sheets around a slab: the beam spreads in them, reflectance and transmittance stay the published ones.
+    let clear = layer(0.0, 0.0, 0.0, 1.0, 0.1);
+    let slab = layer(1.0, 9.0, 0.75, 1.0, 0.2);
+    let estimates = run(vec![clear, slab, clear], PACKETS);
+    meets("R", estimates.diffuse_reflectance(), 0.09739, 1e-5);
+    meets("T", estimates.transmittance(), 0.66096, 1e-5);
+    // Clear and endless below: what goes down is gone, and counted beyond the last ring.
+    let endless = run(vec![slab, layer(0.0, 0.0, 0.0, 1.0, f64::INFINITY)], PACKETS);
+    meets("T", endless.transmittance(), 0.66096, 1e-5);
+    assert!(endless.transmittance_per_mm2().iter().all(|ring| ring.value == 0.0));
+}
+
+#[test]
+fn batches_of_any_size_and_place_hold_their_packets_and_no_others() {
+    let simulation = Simulation {
+        slab: LayeredSlab::in_air(vec![layer(0.1, 5.0, 0.9, 1.4, 2.0), layer(0.3, 2.0, 0.0, 1.3, 1.0)])
+            .unwrap(),
+        grid: GRID,
+        seed: 5,
+    };
+    let whole = simulation.batch(3, 14);
+    for cut in [1, 7, 8, 9, 13] {
+        let parts = [simulation.batch(3, cut), simulation.batch(3 + cut, 14 - cut)];
+        for (i, &value) in whole.values.iter().enumerate() {
+            let sum = parts[0].values[i] + parts[1].values[i];
+            assert!((sum - value).abs() < 1e-12, "cut at {cut}, counter {i}: {sum} against {value}");
+        }
+    }
 }
 
 #[test]

@@ -15,6 +15,7 @@ mod multipole;
 pub mod presets;
 mod profile;
 mod rgb_gaussian_sum;
+mod ring_profile;
 pub mod simulate;
 mod stack;
 
@@ -26,6 +27,7 @@ pub use multipole::{Multipole, MultipoleError, Response};
 pub use presets::{Preset, UnknownPreset};
 pub use profile::Profile;
 pub use rgb_gaussian_sum::RgbGaussianSum;
+pub use ring_profile::RingProfile;
 pub use stack::{Stack, StackError, TissueLayer};
 
 #[cfg(test)]

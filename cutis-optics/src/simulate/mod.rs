@@ -15,13 +15,21 @@ mod henyey_greenstein;
 mod lanes;
 mod layers;
 mod packets;
+mod path_counter;
+mod path_lengths;
+mod paths;
 mod random;
+mod rings;
 mod tally;
 mod walk;
 
 pub use estimate::{Estimate, Estimates};
 pub use fresnel::fresnel_reflectance;
 pub use layers::{Layer, LayerError, LayeredSlab};
+pub use path_counter::PathCounter;
+pub use path_lengths::{Absorbed, PathLengths};
+pub use paths::{MOST_LAYERS, PathBatch, PathError, PathSimulation};
+pub use rings::{RingError, Rings};
 pub use tally::{Grid, Tally};
 
 use tally::Counter;
@@ -45,8 +53,9 @@ impl Simulation {
     /// Runs packets `first` to `first + count - 1`.
     pub fn batch(&self, first: u64, count: u64) -> Tally {
         let counter = Counter::new(&self.grid, self.slab.layers().len());
-        let counter = Walk::new(&self.slab, self.seed, first..first + count, counter).run();
-        counter.tally(count, self.slab.specular_reflectance())
+        let specular = self.slab.specular_reflectance();
+        let counter = Walk::new(&self.slab, 1.0 - specular, self.seed, first..first + count, counter).run();
+        counter.tally(count, specular)
     }
 
     /// Runs `packets` packets, one batch after the other. Programs with threads call [`Simulation::batch`] themselves and
@@ -63,6 +72,8 @@ impl Simulation {
     }
 }
 
+#[cfg(test)]
+mod path_tests;
 #[cfg(test)]
 mod slow_tests;
 #[cfg(test)]

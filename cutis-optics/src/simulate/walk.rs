@@ -60,12 +60,18 @@ pub(super) struct Walk<'a, R> {
 }
 
 impl<'a, R: Record> Walk<'a, R> {
-    /// Before the first step; packets get their numbers from the range.
-    pub(super) fn new(slab: &'a LayeredSlab, seed: u64, numbers: Range<u64>, record: R) -> Self {
+    /// Before the first step; packets enter with this weight and get their numbers from the range.
+    pub(super) fn new(
+        slab: &'a LayeredSlab,
+        entering: f64,
+        seed: u64,
+        numbers: Range<u64>,
+        record: R,
+    ) -> Self {
         let flights = slab.flights();
         Self {
             flights,
-            entering: 1.0 - slab.specular_reflectance(),
+            entering,
             random: Random::new(seed),
             packets: Packets::none(&flights[0]),
             alive: splat(0.0),

@@ -1,6 +1,7 @@
 //! Absorption applied afterwards against direct simulation, against Beer and Lambert's law, and against its own books.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+use super::paths::PathExit;
 use super::tests::layer;
 use super::*;
 use crate::profile::Profile;
@@ -106,6 +107,23 @@ fn cells_cost_less_than_they_say() {
         let error = ((squares / packets - (sum / packets).powi(2)) / packets).sqrt();
         assert!((got.standard_error / error - 1.0).abs() < 2e-3, "{absorption:?}: {got:?} against {error}");
     }
+}
+
+#[test]
+fn a_cell_knows_how_paths_in_two_layers_go_together() {
+    let simulation = PathSimulation::in_air(&skin([0.0; 2]), &[0.03, 0.03], Rings::of_skin(), 7).unwrap();
+    let exit = |path_mm| PathExit {
+        downwards: false,
+        r_mm: 0.1,
+        weight: 1.0,
+        path_mm: [path_mm, path_mm, 0.0, 0.0],
+    };
+    let mut counter = simulation.counter();
+    counter.add(&PathBatch { packets: 2, exits: vec![exit(0.100), exit(0.104)] });
+    let got = counter.path_lengths().with_absorption(&[40.0, 20.0]).unwrap().total_reflectance.value;
+    // Optical depths 6 ± 0.12 about the mean: cosh(0.12), of which the cell leaves out 0.12⁴/24 = 9e-6.
+    let expected = 0.5 * ((-6.0f64).exp() + (-6.24f64).exp());
+    assert!((got / expected - 1.0).abs() < 1e-5, "{got} against {expected}");
 }
 
 #[test]

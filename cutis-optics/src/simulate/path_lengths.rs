@@ -4,7 +4,8 @@
 //! covariance C this is W e^(-a·m) (1 + a·C a/2 + third moments): with s = a·L, cells of width δ = 1/8 in ln L are narrow,
 //! packets lie nearly evenly in them, and what is left out is the fourth moment, (δ s)⁴/1920 of the cell, and what the
 //! slope of the density makes of the third, (δ s)³ δ/240 or so: at s = 2, where cells count most, 2e-6 and 8e-6; at s = 8,
-//! where 3 in 10,000 are left, 5e-4 and 5e-4. Summed over a ring it is below 1e-4 of what leaves. Two layers add their s.
+//! where 3 in 10,000 are left, 5e-4 and 5e-4. Two layers add their s. Summed over all that skin
+//! reflects it is below 1e-4, which a test holds it to.
 //!
 //! Every packet leaves once at most, so that the variance of a sum is Σ (W e^(-a·L))² less the square of the mean.
 

@@ -40,7 +40,7 @@ impl Rings {
         Ok(Self { edges_mm })
     }
 
-    /// From 0.005 mm near the beam, half a mean free path of reduced scattering in epidermis, to 30 mm.
+    /// From 0.005 mm near the beam, a twenty-seventh of the transport mean free path in epidermis at 500 nm, to 30 mm.
     pub fn of_skin() -> Self {
         Self::new(0.005, 20, 1.2, 30.0).expect("the numbers are in their ranges")
     }

@@ -1,9 +1,10 @@
 //! Fits of sums of Gaussians to the dipole of marble: one channel with four and eight, all three together with six.
 //! The spectrum of a stack of three layers; Monte Carlo of two published slabs on one thread.
+//! One choice of absorption for a million packets of skin that were simulated without any.
 #![allow(missing_docs, reason = "criterion's macros make public functions")]
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
-use cutis_optics::simulate::{Grid, Layer, LayeredSlab, Simulation};
+use cutis_optics::simulate::{Grid, Layer, LayeredSlab, PathLengths, PathSimulation, Rings, Simulation};
 use cutis_optics::{Dipole, FitMethod, Medium, Profile, Stack, TissueLayer, fit, presets, rgb_kernel};
 use std::hint::black_box;
 use std::time::Duration;
@@ -63,6 +64,20 @@ fn simulation(g: f64, refractive_index: f64, thickness_mm: f64) -> Simulation {
     }
 }
 
+/// A million packets through epidermis and dermis, absorption left for afterwards.
+fn skin_paths() -> PathLengths {
+    let layer = |sigma_s_per_mm, refractive_index, thickness_mm| Layer {
+        sigma_a_per_mm: 0.0,
+        sigma_s_per_mm,
+        g: 0.0,
+        refractive_index,
+        thickness_mm,
+    };
+    let layers = [layer(7.3, 1.4, 0.25), layer(3.65, 1.38, f64::INFINITY)];
+    let simulation = PathSimulation::in_air(&layers, &[0.03, 0.03], Rings::of_skin(), 1);
+    simulation.expect("the layers are possible").run(1_000_000)
+}
+
 fn layers(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("layers");
     let stack = three_layers();
@@ -77,5 +92,14 @@ fn layers(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, optics, layers);
+fn absorption_afterwards(criterion: &mut Criterion) {
+    let paths = skin_paths();
+    let mut group = criterion.benchmark_group("layers");
+    group.bench_function("absorption afterwards", |b| {
+        b.iter(|| paths.with_absorption(black_box(&[1.0, 0.5])).expect("skin absorbs so"));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, optics, layers, absorption_afterwards);
 criterion_main!(benches);

@@ -108,6 +108,16 @@ impl Estimates {
         self.range(self.slots.absorption_by_depth, self.grid.depth_bins + 1)
     }
 
+    /// Fraction that leaves through the top of each ring, and beyond the last.
+    pub fn reflectance_by_ring(&self) -> Vec<Estimate> {
+        self.range(self.slots.reflectance_by_radius, self.grid.radial_bins + 1)
+    }
+
+    /// Edges of the rings from 0 outwards, mm.
+    pub fn ring_edges_mm(&self) -> Vec<f64> {
+        (0..=self.grid.radial_bins).map(|i| i as f64 * self.grid.radial_step_mm).collect()
+    }
+
     /// Middle of each ring, mm.
     pub fn ring_radii_mm(&self) -> Vec<f64> {
         (0..self.grid.radial_bins).map(|i| (i as f64 + 0.5) * self.grid.radial_step_mm).collect()

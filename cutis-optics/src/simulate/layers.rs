@@ -23,27 +23,29 @@ pub struct LayeredSlab {
     layers: Vec<Layer>,
     flights: Vec<Flight>,
     index_above: f64,
-    index_below: f64,
 }
 
 /// What a flight needs to know of a layer, divisions done.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Flight {
-    /// Extinction coefficient, 1/mm, and its reciprocal.
-    pub(super) sigma_t_per_mm: f64,
+    /// Infinite where nothing is met.
     pub(super) mean_free_path_mm: f64,
     /// Share of the light that a collision absorbs.
     pub(super) absorbed: f64,
     pub(super) g: f64,
     /// Depths of the top and the bottom, mm.
     pub(super) bounds_mm: [f64; 2],
+    /// Refractive index of the layer over that beyond its top and its bottom.
+    pub(super) index_over_beyond: [f64; 2],
 }
 
 impl Flight {
-    fn new(layer: &Layer, bounds_mm: [f64; 2]) -> Self {
-        let sigma_t_per_mm = layer.sigma_a_per_mm + layer.sigma_s_per_mm;
-        let absorbed = if sigma_t_per_mm > 0.0 { layer.sigma_a_per_mm / sigma_t_per_mm } else { 0.0 };
-        Self { sigma_t_per_mm, mean_free_path_mm: sigma_t_per_mm.recip(), absorbed, g: layer.g, bounds_mm }
+    /// All of it, in the order of the fields.
+    #[inline(always)]
+    pub(super) fn numbers(&self) -> [f64; 7] {
+        let &Self { mean_free_path_mm, absorbed, g, bounds_mm: [top, bottom], index_over_beyond } = self;
+        let [up, down] = index_over_beyond;
+        [mean_free_path_mm, absorbed, g, top, bottom, up, down]
     }
 }
 
@@ -98,14 +100,8 @@ impl LayeredSlab {
                 return Err(LayerError::InfiniteInside { layer: i + 1 });
             }
         }
-        let mut depth_mm = 0.0;
-        let flight = |layer: &Layer| {
-            let top_mm = depth_mm;
-            depth_mm += layer.thickness_mm;
-            Flight::new(layer, [top_mm, depth_mm])
-        };
-        let flights = layers.iter().map(flight).collect();
-        Ok(Self { layers, flights, index_above, index_below })
+        let flights = flights(&layers, index_above, index_below);
+        Ok(Self { layers, flights, index_above })
     }
 
     /// The layers, top first.
@@ -118,23 +114,31 @@ impl LayeredSlab {
         fresnel_reflectance(self.index_above, self.layers[0].refractive_index, 1.0).0
     }
 
-    /// The constants of a layer.
-    #[inline(always)]
-    pub(super) fn flight(&self, layer: usize) -> &Flight {
-        &self.flights[layer]
+    /// The constants of all layers.
+    pub(super) fn flights(&self) -> &[Flight] {
+        &self.flights
     }
+}
 
-    /// Refractive index beyond the top or the bottom of a layer.
-    #[inline]
-    pub(super) fn index_beyond(&self, layer: usize, downwards: bool) -> f64 {
-        if downwards {
-            self.layers.get(layer + 1).map_or(self.index_below, |l| l.refractive_index)
-        } else if layer == 0 {
-            self.index_above
-        } else {
-            self.layers[layer - 1].refractive_index
+fn flights(layers: &[Layer], index_above: f64, index_below: f64) -> Vec<Flight> {
+    let index = |number: usize| match number {
+        0 => index_above,
+        number => layers.get(number - 1).map_or(index_below, |l| l.refractive_index),
+    };
+    let mut depth_mm = 0.0;
+    let flight = |(i, layer): (usize, &Layer)| {
+        let top_mm = depth_mm;
+        depth_mm += layer.thickness_mm;
+        let sigma_t_per_mm = layer.sigma_a_per_mm + layer.sigma_s_per_mm;
+        Flight {
+            mean_free_path_mm: sigma_t_per_mm.recip(),
+            absorbed: if sigma_t_per_mm > 0.0 { layer.sigma_a_per_mm / sigma_t_per_mm } else { 0.0 },
+            g: layer.g,
+            bounds_mm: [top_mm, depth_mm],
+            index_over_beyond: [i, i + 2].map(|beyond| layer.refractive_index / index(beyond)),
         }
-    }
+    };
+    layers.iter().enumerate().map(flight).collect()
 }
 
 fn check(number: usize, layer: &Layer) -> Result<(), LayerError> {

@@ -6,24 +6,34 @@
 //! doi:10.1016/0169-2607(95)01640-F, not opened; the method is that of their program MCML).
 //! Not modelled: polarisation, fluorescence, interference, anything that is not flat.
 //!
-//! Packets run in batches of [`BATCH`]; every packet has random numbers of its own, so that batches may run on any thread
-//! in any order. Added up in their order they give the same bits. Standard errors come from how batches differ.
+//! Packets run in batches of [`BATCH`], eight at a time in the lanes of the processor's registers. Every packet has random
+//! numbers of its own, so that batches may run on any thread in any order. Added up in their order they give the same bits. Standard errors come from how batches differ.
 
 mod estimate;
 mod fresnel;
 mod henyey_greenstein;
+mod lanes;
 mod layers;
-mod packet;
+mod packets;
+mod path_counter;
+mod path_lengths;
+mod paths;
 mod random;
+mod rings;
 mod tally;
+mod walk;
 
 pub use estimate::{Estimate, Estimates};
 pub use fresnel::fresnel_reflectance;
 pub use layers::{Layer, LayerError, LayeredSlab};
+pub use path_counter::PathCounter;
+pub use path_lengths::{Absorbed, PathLengths};
+pub use paths::{MOST_LAYERS, PathBatch, PathError, PathSimulation};
+pub use rings::{RingError, Rings};
 pub use tally::{Grid, Tally};
 
-use packet::Packet;
-use random::Random;
+use tally::Counter;
+use walk::Walk;
 
 /// Packets of a batch.
 pub const BATCH: u64 = 1024;
@@ -42,12 +52,10 @@ pub struct Simulation {
 impl Simulation {
     /// Runs packets `first` to `first + count - 1`.
     pub fn batch(&self, first: u64, count: u64) -> Tally {
-        let mut tally = Tally::new(&self.grid, self.slab.layers().len());
-        for number in first..first + count {
-            tally.begin_packet(self.slab.specular_reflectance());
-            Packet::enter(&self.slab).run(&self.slab, &mut Random::new(self.seed, number), &mut tally);
-        }
-        tally
+        let counter = Counter::new(&self.grid, self.slab.layers().len());
+        let specular = self.slab.specular_reflectance();
+        let counter = Walk::new(&self.slab, 1.0 - specular, self.seed, first..first + count, counter).run();
+        counter.tally(count, specular)
     }
 
     /// Runs `packets` packets, one batch after the other. Programs with threads call [`Simulation::batch`] themselves and
@@ -64,5 +72,9 @@ impl Simulation {
     }
 }
 
+#[cfg(test)]
+mod path_tests;
+#[cfg(test)]
+mod slow_tests;
 #[cfg(test)]
 mod tests;

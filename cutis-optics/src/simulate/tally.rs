@@ -1,5 +1,12 @@
 //! What is counted of a batch of packets.
 
+use super::lanes::{Lanes, bins, indices, splat};
+use super::packets::Packets;
+use super::walk::{Exits, Record};
+
+/// Weight below which a packet plays for its life.
+const LIGHT: f64 = 1e-4;
+
 /// How finely exits and absorption are counted. What lies beyond the last bin is counted in one bin more.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
@@ -22,9 +29,6 @@ pub struct Tally {
     pub(super) packets: u64,
     /// All counters one after another; [`Slots`] says where.
     pub(super) values: Vec<f64>,
-    slots: Slots,
-    rings_per_mm: f64,
-    sheets_per_mm: f64,
 }
 
 /// Where each counter begins.
@@ -67,56 +71,89 @@ impl Slots {
     }
 }
 
-impl Tally {
+/// The counters that the walk writes to. Every number that is the sum of others is summed at the end.
+pub(super) struct Counter {
+    grid: Grid,
+    layers: usize,
+    roulette: f64,
+    /// Reflectance, then transmittance, by ring.
+    exits_by_radius: Vec<f64>,
+    /// The same by cosine, empty if nobody asks.
+    exits_by_cosine: Vec<f64>,
+    /// Sheet by sheet for the first layer, then for the next.
+    absorbed: Vec<f64>,
+}
+
+impl Counter {
     pub(super) fn new(grid: &Grid, layers: usize) -> Self {
-        let slots = Slots::new(grid, layers);
         Self {
             grid: *grid,
-            packets: 0,
-            values: vec![0.0; slots.count],
-            slots,
-            rings_per_mm: grid.radial_step_mm.recip(),
-            sheets_per_mm: grid.depth_step_mm.recip(),
+            layers,
+            roulette: 0.0,
+            exits_by_radius: vec![0.0; 2 * (grid.radial_bins + 1)],
+            exits_by_cosine: vec![0.0; 2 * grid.cosine_bins],
+            absorbed: vec![0.0; layers * (grid.depth_bins + 1)],
         }
     }
 
-    pub(super) fn begin_packet(&mut self, specular_reflectance: f64) {
-        self.packets += 1;
-        self.values[SPECULAR] += specular_reflectance;
+    /// Everything that was counted of so many packets.
+    pub(super) fn tally(self, packets: u64, specular_reflectance: f64) -> Tally {
+        let slots = Slots::new(&self.grid, self.layers);
+        let mut values = vec![0.0; slots.count];
+        let (reflected, transmitted) = self.exits_by_radius.split_at(self.grid.radial_bins + 1);
+        values[SPECULAR] = specular_reflectance * packets as f64;
+        values[REFLECTANCE] = reflected.iter().sum();
+        values[TRANSMITTANCE] = transmitted.iter().sum();
+        values[ROULETTE] = self.roulette;
+        values[ABSORBED] = self.absorbed.iter().sum();
+        values[slots.reflectance_by_radius..slots.reflectance_by_cosine]
+            .copy_from_slice(&self.exits_by_radius);
+        values[slots.reflectance_by_cosine..slots.absorption_by_depth].copy_from_slice(&self.exits_by_cosine);
+        for (layer, sheets) in self.absorbed.chunks(self.grid.depth_bins + 1).enumerate() {
+            values[slots.layers + layer] = sheets.iter().sum();
+            let by_depth = values[slots.absorption_by_depth..].iter_mut().zip(sheets);
+            by_depth.for_each(|(sum, sheet)| *sum += sheet);
+        }
+        Tally { grid: self.grid, packets, values }
+    }
+}
+
+impl Record for Counter {
+    fn enter(&mut self, _: Lanes) {}
+
+    fn fly(&mut self, _: &Packets, _: Lanes) {}
+
+    #[inline(always)]
+    fn absorb(&mut self, packets: &Packets, weight: Lanes) {
+        let last = splat(self.grid.depth_bins as f64);
+        let sheet = bins(packets.position_mm[2] * splat(self.grid.depth_step_mm.recip()), last);
+        let slots = indices(packets.layer.mul_add(last + splat(1.0), sheet));
+        for (slot, weight) in slots.into_iter().zip(weight.to_array()) {
+            self.absorbed[slot] += weight;
+        }
     }
 
-    /// Weight that left through the top or the bottom.
-    #[inline]
-    pub(super) fn leave(&mut self, downwards: bool, r_mm: f64, cos: f64, weight: f64) {
-        let Slots { reflectance_by_radius, transmittance_by_radius, .. } = self.slots;
-        let Slots { reflectance_by_cosine, transmittance_by_cosine, .. } = self.slots;
-        let (total, rings, cosines) = if downwards {
-            (TRANSMITTANCE, transmittance_by_radius, transmittance_by_cosine)
-        } else {
-            (REFLECTANCE, reflectance_by_radius, reflectance_by_cosine)
-        };
-        self.values[total] += weight;
-        // Casts saturate: far away is the last bin.
-        let ring = (r_mm * self.rings_per_mm) as usize;
-        self.values[rings + ring.min(self.grid.radial_bins)] += weight;
+    #[inline(always)]
+    fn light(&self, packets: &Packets) -> Lanes {
+        packets.weight.simd_lt(splat(LIGHT))
+    }
+
+    fn roulette(&mut self, _: usize, weight: f64, new_weight: f64) {
+        self.roulette += weight - new_weight;
+    }
+
+    #[inline(always)]
+    fn leave(&mut self, exits: &Exits) {
+        let weight = exits.weight.to_array();
+        let rings = splat(self.grid.radial_bins as f64);
+        let ring = bins(exits.r2_mm2.sqrt() * splat(self.grid.radial_step_mm.recip()), rings);
+        let ring = indices(ring + (exits.downwards & (rings + splat(1.0))));
+        ring.into_iter().zip(weight).for_each(|(ring, weight)| self.exits_by_radius[ring] += weight);
         if self.grid.cosine_bins > 0 {
-            let bin = (cos * self.grid.cosine_bins as f64) as usize;
-            self.values[cosines + bin.min(self.grid.cosine_bins - 1)] += weight;
+            let cosines = splat(self.grid.cosine_bins as f64);
+            let bin = bins(exits.cos * cosines, cosines - splat(1.0));
+            let bin = indices(bin + (exits.downwards & cosines));
+            bin.into_iter().zip(weight).for_each(|(bin, weight)| self.exits_by_cosine[bin] += weight);
         }
-    }
-
-    /// Weight that was absorbed.
-    #[inline]
-    pub(super) fn absorb(&mut self, layer: usize, depth_mm: f64, weight: f64) {
-        self.values[ABSORBED] += weight;
-        self.values[self.slots.layers + layer] += weight;
-        let sheet = (depth_mm * self.sheets_per_mm) as usize;
-        self.values[self.slots.absorption_by_depth + sheet.min(self.grid.depth_bins)] += weight;
-    }
-
-    /// Weight that Russian roulette took away (or, negative, gave).
-    #[inline]
-    pub(super) fn roulette(&mut self, weight: f64) {
-        self.values[ROULETTE] += weight;
     }
 }

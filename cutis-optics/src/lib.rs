@@ -7,6 +7,7 @@
 //! Lengths in mm, coefficients in 1/mm. Everything here is f64 and pure.
 
 pub mod boundary;
+mod burley;
 mod dipole;
 pub mod fit;
 mod gaussian_sum;
@@ -17,7 +18,9 @@ mod profile;
 mod rgb_gaussian_sum;
 pub mod simulate;
 mod stack;
+pub mod translate;
 
+pub use burley::{Burley, BurleyError, BurleyScaling};
 pub use dipole::{DiffusionValidity, Dipole};
 pub use fit::{Fit, FitError, FitMethod, RgbFit, fit, fit_rgb, relative_rms_power_error, rgb_kernel};
 pub use gaussian_sum::{Gaussian, GaussianSum};

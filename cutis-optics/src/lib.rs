@@ -5,10 +5,26 @@
 //! [`RgbGaussianSum`]. Layers make a [`Stack`] of [`Multipole`]s, a profile like any other; [`simulate`] is the Monte
 //! Carlo that they are held to. Symbols are listed in `docs/notation.md`.
 //! Lengths in mm, coefficients in 1/mm. Everything here is f64 and pure.
+//!
+//! From layers to a table in WGSL:
+//!
+//! ```
+//! use cutis_optics::{FitMethod, Medium, Stack, TissueLayer, export::KernelTable, fit};
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let upper = TissueLayer { medium: Medium::new(0.2, 4.8, 1.4)?, thickness_mm: 0.25 };
+//! let lower = TissueLayer { medium: Medium::new(0.1, 3.0, 1.38)?, thickness_mm: f64::INFINITY };
+//! let profile = Stack::in_air(&[upper, lower])?;
+//! let table = KernelTable::from_fit("two layers", "multipole", &fit(&profile, 6, FitMethod::Energy)?);
+//! let wgsl = table.to_wgsl();
+//! # assert!(wgsl.contains("array<f32, 6>"));
+//! # Ok(())
+//! # }
+//! ```
 
 pub mod boundary;
 mod burley;
 mod dipole;
+pub mod export;
 pub mod fit;
 mod gaussian_sum;
 mod medium;
@@ -17,6 +33,7 @@ pub mod presets;
 mod profile;
 mod rgb_gaussian_sum;
 pub mod simulate;
+mod source;
 mod stack;
 pub mod translate;
 
@@ -29,6 +46,7 @@ pub use multipole::{Multipole, MultipoleError, Response};
 pub use presets::{Preset, UnknownPreset};
 pub use profile::Profile;
 pub use rgb_gaussian_sum::RgbGaussianSum;
+pub use source::{ProfileSource, SourceError, UnknownSource};
 pub use stack::{Stack, StackError, TissueLayer};
 
 #[cfg(test)]

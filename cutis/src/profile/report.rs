@@ -3,8 +3,8 @@
 use super::Profiled;
 use super::channel::{Channel, method_name};
 use super::explain::Explanation;
+use cutis_optics::TissueLayer;
 use cutis_optics::translate::{ChannelLoss, Field, Translation};
-use cutis_optics::{RgbFit, TissueLayer};
 use serde::Serialize;
 
 /// Everything.
@@ -114,7 +114,7 @@ impl Report {
             origin: profiled.material.origin.clone(),
             source: profiled.channels[0].source_name(),
             channels: profiled.channels.iter().map(channel).collect(),
-            joint_kernel: profiled.joint.as_ref().map(JointReport::new),
+            joint_kernel: JointReport::of(profiled),
             translations: translations.into_iter().map(TranslationReport::new).collect(),
             wall_seconds,
         }
@@ -176,14 +176,17 @@ impl LayerReport {
 }
 
 impl JointReport {
-    fn new(fit: &RgbFit) -> Self {
-        Self {
-            method: method_name(fit.method),
-            variances_mm2: fit.kernel.variances_mm2.clone(),
-            weights: fit.kernel.weights.clone(),
-            relative_rms_power_error: fit.relative_rms_power_error,
-            energy: fit.energy,
-        }
+    /// None for a single channel.
+    fn of(profiled: &Profiled) -> Option<Self> {
+        let kernel = profiled.kernel();
+        let errors = profiled.joint.as_ref().map_or([0.0; 3], |fit| fit.relative_rms_power_error);
+        (profiled.channels.len() == 3).then(|| Self {
+            method: profiled.joint.as_ref().map_or("given", |fit| method_name(fit.method)),
+            energy: kernel.totals(),
+            variances_mm2: kernel.variances_mm2,
+            weights: kernel.weights,
+            relative_rms_power_error: errors,
+        })
     }
 }
 

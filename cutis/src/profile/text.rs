@@ -53,12 +53,17 @@ fn layers(text: &mut String, report: &Report) {
                 "{:3} {:<6} {:<16} {:<17} {:<8} {thickness}",
                 channel.channel.unwrap_or("all"),
                 i + 1,
-                layer.sigma_a_per_mm,
-                layer.sigma_s_reduced_per_mm,
+                six_digits(layer.sigma_a_per_mm),
+                six_digits(layer.sigma_s_reduced_per_mm),
                 layer.refractive_index
             );
         }
     }
+}
+
+/// A number without the digits that arithmetic left.
+fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().expect("a number was printed")
 }
 
 fn joint(text: &mut String, kernel: &JointReport) {
@@ -119,7 +124,8 @@ fn translation(text: &mut String, translation: &TranslationReport) {
                 error.beam_standard_deviation_mm
             )
         };
-        let change = 100.0 * loss.relative_change_of_total;
+        // Adding 0 takes the sign from what rounds to nothing.
+        let change = (1e6 * loss.relative_change_of_total).round() * 1e-4 + 0.0;
         line!(text, "  {name}  {}   {}   {change:+.4} %", lit(&loss.fine), lit(&loss.wide));
     }
 }

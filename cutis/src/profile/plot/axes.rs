@@ -38,6 +38,13 @@ pub const CHANNEL_PENS: [Pen; 3] = [
 /// One channel alone.
 pub const ONE_PEN: Pen = Pen { colour: INK, width: 1.8, dash: None, opacity: 1.0 };
 
+impl Pen {
+    /// For what stands behind a curve.
+    pub fn thin(self) -> Self {
+        Self { width: 0.7, dash: None, opacity: 0.45, ..self }
+    }
+}
+
 /// Words and ranges of a panel.
 pub struct Axes<'a> {
     pub title: &'a str,
@@ -83,7 +90,7 @@ impl Axes<'_> {
             .axis_desc_style(words)
             .label_style(numbers)
             .x_labels(7)
-            .y_labels(6)
+            .y_labels(8)
             .x_label_formatter(&|v| number(*v))
             .y_label_formatter(&|v| number(*v))
             .axis_style(INK.stroke_width(self.scale))

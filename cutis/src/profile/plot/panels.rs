@@ -65,6 +65,7 @@ where
     DB::ErrorType: 'static,
 {
     area.fill(&WHITE)?;
+    let area = area.margin(12 * scale, 4 * scale, 4 * scale, 4 * scale);
     let points = |size: u32| ("sans-serif", size * scale).into_font();
     let area = area.titled(&figure.title, points(24))?;
     let area = area.titled(&figure.subtitle, points(15).color(&RGBColor(90, 90, 90)))?;
@@ -95,22 +96,20 @@ fn profile<DB: DrawingBackend>(figure: &Figure, area: &Area<DB>, scale: u32) -> 
 where
     DB::ErrorType: 'static,
 {
-    let axes = Axes {
-        title: "(b) profile, its fit and the Gaussians of the fit",
-        x: "r [mm]",
-        y: "R(r) [1/mm²]",
-        scale,
-    };
+    let axes =
+        Axes {
+            title: "(b) profile; thin: its fit and the Gaussians", x: "r [mm]", y: "R(r) [1/mm²]", scale
+        };
     let top = 10_f64.powf((1.3 * highest(figure.all(|s| &s.profile))).log10());
     let bottom = top * 10_f64.powi(-DECADES);
     let (from, to) = figure.ranges.r_log_mm;
     let mut chart = axes.chart(area, (from..to).log_scale(), (bottom..top).log_scale())?;
     for curve in &figure.curves {
-        let thin = Pen { width: 0.7, dash: None, opacity: 0.45, ..curve.pen };
+        let thin = curve.pen.thin();
         for gaussian in &curve.sampled.gaussians {
             axes.curve(&mut chart, gaussian, bottom, thin)?;
         }
-        axes.curve(&mut chart, &curve.sampled.fit, bottom, Pen { width: 1.0, dash: None, ..curve.pen })?;
+        axes.curve(&mut chart, &curve.sampled.fit, bottom, thin)?;
         axes.curve(&mut chart, &curve.sampled.profile, bottom, curve.pen)?;
     }
     Ok(())
@@ -147,12 +146,7 @@ where
     let (from, to) = figure.ranges.k_log_per_mm;
     let mut chart = axes.chart(area, (from..to).log_scale(), 0.0..top)?;
     for (row, curve) in figure.curves.iter().enumerate() {
-        axes.curve(
-            &mut chart,
-            &curve.sampled.spectrum_of_fit,
-            0.0,
-            Pen { width: 0.8, dash: None, ..curve.pen },
-        )?;
+        axes.curve(&mut chart, &curve.sampled.spectrum_of_fit, 0.0, curve.pen.thin())?;
         axes.curve(&mut chart, &curve.sampled.spectrum, 0.0, curve.pen)?;
         axes.legend(&chart, row, &curve.name, curve.pen)?;
     }

@@ -4,7 +4,7 @@ use crate::profile::channel::Channel;
 use cutis_optics::{GaussianSum, Profile};
 
 /// Points of a curve.
-const POINTS: usize = 240;
+const POINTS: usize = 480;
 /// r R(r) below this part of its peak is left out to the right.
 const TAIL: f64 = 0.004;
 /// The logarithmic panel reaches this much farther than the linear ones, …

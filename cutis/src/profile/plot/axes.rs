@@ -14,6 +14,9 @@ pub type Drawn = Result<(), Box<dyn Error>>;
 pub type Area<DB> = DrawingArea<DB, Shift>;
 /// A panel with its axes.
 pub type Chart<'a, DB, X, Y> = ChartContext<'a, DB, Cartesian2d<X, Y>>;
+/// A panel with axes over two ranges.
+type ChartOn<'a, DB, X, Y> =
+    Chart<'a, DB, <X as AsRangedCoord>::CoordDescType, <Y as AsRangedCoord>::CoordDescType>;
 
 const INK: RGBColor = RGBColor(30, 30, 30);
 const GRID: RGBColor = RGBColor(225, 225, 225);
@@ -64,7 +67,7 @@ impl Axes<'_> {
         area: &Area<DB>,
         x: X,
         y: Y,
-    ) -> Result<Chart<'c, DB, X::CoordDescType, Y::CoordDescType>, Box<dyn Error>>
+    ) -> Result<ChartOn<'c, DB, X, Y>, Box<dyn Error>>
     where
         DB: DrawingBackend + 'c,
         DB::ErrorType: 'static,
@@ -143,17 +146,21 @@ impl Axes<'_> {
         let (width, _) = area.dim_in_pixel();
         let (right, y) = (width as i32 - self.dots(8.0), self.dots(14.0 + 19.0 * row as f64));
         let (from, to) = (right - self.dots(40.0), right);
+        let anchor = Pos::new(HPos::Right, VPos::Center);
+        let words = ("sans-serif", self.dots(14.0)).into_font().color(&INK).pos(anchor);
+        let left = from - self.dots(12.0) - area.estimate_text_size(name, &words)?.0 as i32;
+        let (half, edge) = (self.dots(9.5), self.dots(3.0));
+        // Paper under the words, so that no grid line crosses them.
+        area.draw(&Rectangle::new([(left, y - half), (to + edge, y + half)], WHITE.filled()))?;
         let style = pen.colour.mix(pen.opacity).stroke_width(self.dots(pen.width).max(1) as u32);
         let stroke = vec![(from, y), (to, y)];
         match pen.dash {
             None => area.draw(&PathElement::new(stroke, style))?,
             Some((dash, gap)) => {
                 let (dash, gap) = (dash * self.scale, gap * self.scale);
-                area.draw(&DashedPathElement::new(stroke.into_iter(), dash, gap, style))?;
+                area.draw(&DashedPathElement::new(stroke, dash, gap, style))?;
             }
         }
-        let anchor = Pos::new(HPos::Right, VPos::Center);
-        let words = ("sans-serif", self.dots(14.0)).into_font().color(&INK).pos(anchor);
         area.draw(&Text::new(name.to_owned(), (from - self.dots(6.0), y), words))?;
         Ok(())
     }

@@ -105,10 +105,10 @@ fn fitted_lengths_beat_the_formula() {
         let case = case(name);
         let media = presets::find(name).unwrap().media().unwrap();
         let unreal = translated(&case, Target::Unreal, GltfDraft::None);
-        for c in 0..3 {
+        for (c, medium) in media.iter().enumerate() {
             let by_formula = Burley::from_mean_free_path(
                 case.dipoles[c].total(),
-                media[c].diffuse_mean_free_path_mm(),
+                medium.diffuse_mean_free_path_mm(),
                 BurleyScaling::DiffuseMeanFreePath,
             );
             let formula = read_back(&case, c, &by_formula.unwrap());

@@ -314,3 +314,14 @@ fn hostile_files_are_refused_by_name_and_place() {
     fs::create_dir(folder.path().join("folder.toml")).expect("made");
     assert!(stderr(&run(folder.path(), &["profile", "folder.toml"])).contains("is not a file"));
 }
+
+#[test]
+fn the_ends_of_what_a_medium_may_be_are_drawn_and_translated() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for words in ["mu_a=1e9,mu_s=1e-9", "mu_a=0,mu_s=1e9", "mu_a=1e-12,mu_s=1e-9,n=3"] {
+        let files = ["--gaussians", "2", "--plot", "a.svg", "--export", "a.mtlx", "--export", "a.gltf"];
+        let report = json_in(folder.path(), &[&["--layer", words], &files[..]].concat());
+        assert!(number(&report["fit"]["relative_rms_power_error"]) < 1.0, "{words}");
+        assert!(report["translations"][0]["loss"][0]["wide"]["relative_rms_power_error"].is_number());
+    }
+}

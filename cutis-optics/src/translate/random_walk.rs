@@ -38,6 +38,7 @@ pub fn single_scattering_albedo(colour: f64, g: f64) -> f64 {
 pub struct RandomWalk {
     colour: f64,
     mean_free_path_mm: f64,
+    /// Of a medium whose mean free path is 1 mm: any other is the same picture in another size.
     dipole: Dipole,
 }
 
@@ -45,15 +46,15 @@ impl RandomWalk {
     /// The walk of isotropic steps that shows `colour`; alpha is not taken below `alpha_min` (0 for none).
     ///
     /// # Panics
-    /// If the colour is not from 0 to 1 or the mean free path no length that a medium can have.
+    /// If the colour is not a number.
     pub fn new(colour: f64, mean_free_path_mm: f64, alpha_min: f64) -> Self {
         let alpha = single_scattering_albedo(colour, 0.0).max(alpha_min);
         let medium = Medium {
-            sigma_a_per_mm: (1.0 - alpha) / mean_free_path_mm,
-            sigma_s_reduced_per_mm: (alpha / mean_free_path_mm).max(SCATTERING_MIN_PER_MM),
+            sigma_a_per_mm: 1.0 - alpha,
+            sigma_s_reduced_per_mm: alpha.max(SCATTERING_MIN_PER_MM),
             refractive_index: 1.0,
         };
-        let dipole = Dipole::new(&medium).expect("an albedo and a length make a medium");
+        let dipole = Dipole::new(&medium).expect("an albedo makes a medium");
         Self { colour, mean_free_path_mm, dipole }
     }
 
@@ -65,11 +66,12 @@ impl RandomWalk {
 
 impl Profile for RandomWalk {
     fn spectrum(&self, k_per_mm: f64) -> f64 {
-        self.colour * self.dipole.spectrum(k_per_mm) / self.dipole.total()
+        self.colour * self.dipole.spectrum(k_per_mm * self.mean_free_path_mm) / self.dipole.total()
     }
 
     fn at_mm(&self, r_mm: f64) -> f64 {
-        self.colour * self.dipole.at_mm(r_mm) / self.dipole.total()
+        let l = self.mean_free_path_mm;
+        self.colour * self.dipole.at_mm(r_mm / l) / (l * l * self.dipole.total())
     }
 }
 
@@ -121,6 +123,18 @@ mod tests {
                 assert!((back - alpha).abs() < 2e-3, "{alpha} {g}: {back}");
             }
         }
+    }
+
+    #[test]
+    fn size_is_all_that_the_mean_free_path_changes() {
+        let (unit, tiny) = (RandomWalk::new(0.6, 1.0, 0.0), RandomWalk::new(0.6, 1e-12, 0.0));
+        assert_eq!(tiny.spectrum(2e12), unit.spectrum(2.0));
+        assert!((tiny.at_mm(3e-12) * 1e-24 / unit.at_mm(3.0) - 1.0).abs() < 1e-14);
+        // The total over the plane, by Simpson over 4000 steps of ln r; e^-40 lies outside.
+        let walk = RandomWalk::new(0.6, 0.5, 0.0);
+        let ring = |t: f64| core::f64::consts::TAU * walk.at_mm(t.exp()) * (2.0 * t).exp();
+        let total = crate::oracle::simpson((1e-8_f64).ln(), (60.0_f64).ln(), 4000, ring);
+        assert!((total / 0.6 - 1.0).abs() < 1e-8, "{total}");
     }
 
     #[test]

@@ -6,6 +6,9 @@
 //! Carlo that they are held to. Symbols are listed in `docs/notation.md`.
 //! Lengths in mm, coefficients in 1/mm. Everything here is f64 and pure.
 //!
+//! What leaves the house: [`export`] writes kernels as constants of shaders, [`translate`] says a material in the words of
+//! other renderers, and how much is lost.
+//!
 //! From layers to a table in WGSL:
 //!
 //! ```

@@ -6,19 +6,19 @@ use cutis_optics::translate::Value;
 use std::fmt::Write;
 
 /// Writing to a String cannot fail.
-macro_rules! line {
+macro_rules! put {
     ($text:expr, $($words:tt)*) => { { let _ = writeln!($text, $($words)*); } };
 }
 
 /// The whole report.
 pub fn text(report: &Report) -> String {
     let mut text = String::new();
-    line!(text, "{}  ({}; source {})", report.material, report.origin, report.source);
+    put!(text, "{}  ({}; source {})", report.material, report.origin, report.source);
     layers(&mut text, report);
-    line!(text, "\nfit       Gaussians   R_d        energy     relative RMS power error");
+    put!(text, "\nfit       Gaussians   R_d        energy     relative RMS power error");
     for channel in &report.channels {
         let (fit, name) = (&channel.fit, channel.channel.unwrap_or("all"));
-        line!(
+        put!(
             text,
             "{name:3} {:8} {:6}      {:.6}   {:.6}   {:.4} %",
             fit.method,
@@ -36,7 +36,7 @@ pub fn text(report: &Report) -> String {
         channel.explanation.iter().for_each(|explained| explanation(&mut text, channel, explained));
     }
     report.translations.iter().for_each(|t| translation(&mut text, t));
-    line!(text, "\n{:.2} s", report.wall_seconds);
+    put!(text, "\n{:.2} s", report.wall_seconds);
     text
 }
 
@@ -44,11 +44,11 @@ fn layers(text: &mut String, report: &Report) {
     if report.channels.iter().all(|channel| channel.layers.is_empty()) {
         return;
     }
-    line!(text, "\nlayer      sigma_a [1/mm]   sigma_s' [1/mm]   index    thickness [mm]");
+    put!(text, "\nlayer      sigma_a [1/mm]   sigma_s' [1/mm]   index    thickness [mm]");
     for channel in &report.channels {
         for (i, layer) in channel.layers.iter().enumerate() {
             let thickness = layer.thickness_mm.map_or_else(|| "endless".to_owned(), |d| d.to_string());
-            line!(
+            put!(
                 text,
                 "{:3} {:<6} {:<16} {:<17} {:<8} {thickness}",
                 channel.channel.unwrap_or("all"),
@@ -68,17 +68,17 @@ fn six_digits(value: f64) -> f64 {
 
 fn joint(text: &mut String, kernel: &JointReport) {
     let errors = kernel.relative_rms_power_error.map(|e| format!("{:.4} %", 100.0 * e)).join("  ");
-    line!(text, "\njoint kernel, method {}; relative RMS power error r g b: {errors}", kernel.method);
-    line!(text, "variance [mm²]   weight r    weight g    weight b");
+    put!(text, "\njoint kernel, method {}; relative RMS power error r g b: {errors}", kernel.method);
+    put!(text, "variance [mm²]   weight r    weight g    weight b");
     for (variance, [r, g, b]) in kernel.variances_mm2.iter().zip(&kernel.weights) {
-        line!(text, "{variance:<16.6} {r:<11.6} {g:<11.6} {b:.6}");
+        put!(text, "{variance:<16.6} {r:<11.6} {g:<11.6} {b:.6}");
     }
 }
 
 fn kernel(text: &mut String, channel: &ChannelReport) {
-    line!(text, "\nvariance [mm²]   weight {}", channel.channel.unwrap_or_default());
+    put!(text, "\nvariance [mm²]   weight {}", channel.channel.unwrap_or_default());
     for (variance, weight) in channel.fit.variances_mm2.iter().zip(&channel.fit.weights) {
-        line!(text, "{variance:<16.6} {weight:.6}");
+        put!(text, "{variance:<16.6} {weight:.6}");
     }
 }
 
@@ -86,24 +86,24 @@ fn explanation(text: &mut String, channel: &ChannelReport, explained: &Explanati
     let name = channel.channel.map_or_else(|| "all channels".to_owned(), |c| format!("channel {c}"));
     let transmittance =
         explained.total_transmittance.map_or_else(|| "not known".to_owned(), |t| format!("{t:.6}"));
-    line!(text, "\n{name}: R_d {:.6}, T_d {transmittance}", explained.total_diffuse_reflectance);
+    put!(text, "\n{name}: R_d {:.6}, T_d {transmittance}", explained.total_diffuse_reflectance);
     for (i, layer) in explained.layers.iter().enumerate() {
         let diffuse =
             layer.diffuse_mean_free_path_mm.map_or_else(|| "endless".to_owned(), |l| format!("{l:.4} mm"));
-        line!(text, "  layer {}: reduced albedo {:.6}", i + 1, layer.albedo_reduced);
-        line!(text, "    transport mean free path {:.4} mm (1/sigma_t')", layer.transport_mean_free_path_mm);
-        line!(text, "    diffuse mean free path   {diffuse} (1/sigma_tr)");
-        line!(text, "    {}", layer.verdict);
+        put!(text, "  layer {}: reduced albedo {:.6}", i + 1, layer.albedo_reduced);
+        put!(text, "    transport mean free path {:.4} mm (1/sigma_t')", layer.transport_mean_free_path_mm);
+        put!(text, "    diffuse mean free path   {diffuse} (1/sigma_tr)");
+        put!(text, "    {}", layer.verdict);
     }
-    line!(text, "  Gaussians   energy     relative RMS power error ({})", channel.fit.method);
+    put!(text, "  Gaussians   energy     relative RMS power error ({})", channel.fit.method);
     for trial in &explained.fits {
         let error = 100.0 * trial.relative_rms_power_error;
-        line!(text, "  {:<11} {:.6}   {error:.4} %", trial.gaussians, trial.energy);
+        put!(text, "  {:<11} {:.6}   {error:.4} %", trial.gaussians, trial.energy);
     }
 }
 
 fn translation(text: &mut String, translation: &TranslationReport) {
-    line!(text, "\n{}: {}", translation.target, translation.place);
+    put!(text, "\n{}: {}", translation.target, translation.place);
     for field in &translation.fields {
         let value = match &field.value {
             Value::Flag(flag) => flag.to_string(),
@@ -112,10 +112,10 @@ fn translation(text: &mut String, translation: &TranslationReport) {
             Value::Rgb([r, g, b]) => format!("{r} {g} {b}"),
         };
         let unit = if field.unit == "none" { String::new() } else { format!(" {}", field.unit) };
-        line!(text, "  {:32} {value}{unit}  ({})", field.name, field.meaning);
+        put!(text, "  {:32} {value}{unit}  ({})", field.name, field.meaning);
     }
-    translation.notes.iter().for_each(|note| line!(text, "  note: {note}"));
-    line!(text, "  loss: relative RMS power error under a beam of standard deviation b, change of the total");
+    translation.notes.iter().for_each(|note| put!(text, "  note: {note}"));
+    put!(text, "  loss: relative RMS power error under a beam of standard deviation b, change of the total");
     for (name, loss) in ["r", "g", "b"].iter().zip(&translation.loss) {
         let lit = |error: &cutis_optics::translate::loss::LitError| {
             format!(
@@ -126,6 +126,6 @@ fn translation(text: &mut String, translation: &TranslationReport) {
         };
         // Adding 0 takes the sign from what rounds to nothing.
         let change = (1e6 * loss.relative_change_of_total).round() * 1e-4 + 0.0;
-        line!(text, "  {name}  {}   {}   {change:+.4} %", lit(&loss.fine), lit(&loss.wide));
+        put!(text, "  {name}  {}   {}   {change:+.4} %", lit(&loss.fine), lit(&loss.wide));
     }
 }

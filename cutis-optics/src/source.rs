@@ -4,7 +4,7 @@
 
 use crate::powers::Powers;
 use crate::{
-    BetterDipole, Dipole, Medium, MediumError, PhotonBeam, Pole, Profile, SingleScattering, Stack,
+    BetterDipole, Boundary, Dipole, Medium, MediumError, PhotonBeam, Pole, Profile, SingleScattering, Stack,
     StackError, TissueLayer,
 };
 use core::fmt;
@@ -16,7 +16,7 @@ pub type BoxedProfile = Box<dyn Profile + Send + Sync>;
 /// Where a profile comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Source {
+pub enum ProfileSource {
     /// Diffusion with one source and one image (Jensen et al. 2001); half-spaces.
     Dipole,
     /// Grosjean's diffusion, and what was scattered once exactly (d'Eon 2012); half-spaces.
@@ -40,33 +40,39 @@ pub enum SourceError {
     Stack(#[from] StackError),
     /// A theory of half-spaces was asked for layers.
     #[error(
-        "the source {source_asked} knows one half-space, not {layers} layers or a finite one; multipole and monte-carlo do"
+        "the source {source_asked} is for one infinitely thick layer, not for {layers} or a finite one; use multipole or monte-carlo"
     )]
     HalfSpaceOnly {
         /// The source.
-        source_asked: Source,
+        source_asked: ProfileSource,
         /// Number of layers given.
         layers: usize,
+    },
+    /// A theory of smooth surfaces was asked for a rough one.
+    #[error("the source {source_asked} knows smooth surfaces only; dipole and multipole know rough ones")]
+    SmoothOnly {
+        /// The source.
+        source_asked: ProfileSource,
     },
     /// Nothing can be had without simulating.
     #[error("the source monte-carlo has to be simulated; it has no formula")]
     NotAnalytic,
 }
 
-impl Source {
+impl ProfileSource {
     /// All of them.
     pub const ALL: [Self; 5] =
         [Self::Dipole, Self::BetterDipole, Self::Multipole, Self::Beam, Self::MonteCarlo];
 
     /// What to take for some layers unless told otherwise: the dipole for a half-space, else the multipole.
-    pub fn usual(layers: &[TissueLayer]) -> Self {
+    pub fn default_for(layers: &[TissueLayer]) -> Self {
         if half_space(layers).is_some() { Self::Dipole } else { Self::Multipole }
     }
 
     /// Whether the profile goes as 1/r towards the point lit, because it holds what was scattered once: it can be fitted
     /// and measured only under a beam of some width ([`crate::WideBeam`]).
     pub fn has_peak(self) -> bool {
-        matches!(self, Self::BetterDipole | Self::Beam)
+        matches!(self, Self::BetterDipole | Self::Beam | Self::MonteCarlo)
     }
 
     /// The reflectance of `layers` in air.
@@ -90,6 +96,30 @@ impl Source {
                 Ok(Box::new(Together(PhotonBeam::new(medium)?, SingleScattering::new(medium)?)))
             }
             Self::MonteCarlo => Err(SourceError::NotAnalytic),
+        }
+    }
+}
+
+impl ProfileSource {
+    /// The reflectance of `layers` in air under a rough surface that lets in the share `rho_dt_mean` of isotropic light
+    /// ([`Boundary::Rough`]).
+    ///
+    /// # Errors
+    /// As [`ProfileSource::profile`]; or if the source knows smooth surfaces only, or the share is none.
+    pub fn profile_under_rough_surface(
+        self,
+        layers: &[TissueLayer],
+        rho_dt_mean: f64,
+    ) -> Result<BoxedProfile, SourceError> {
+        match (self, half_space(layers)) {
+            (Self::Dipole, Some(medium)) => {
+                let eta_inside_over_outside = medium.refractive_index;
+                let boundary = Boundary::Rough { eta_inside_over_outside, rho_dt_mean };
+                Ok(Box::new(Dipole::with_boundary(medium, boundary)?))
+            }
+            (Self::Dipole, None) => self.profile(layers),
+            (Self::Multipole, _) => Ok(Box::new(Stack::under_rough_surface(layers, rho_dt_mean)?)),
+            _ => Err(SourceError::SmoothOnly { source_asked: self }),
         }
     }
 }
@@ -137,7 +167,7 @@ impl Profile for BoxedProfile {
     }
 }
 
-impl fmt::Display for Source {
+impl fmt::Display for ProfileSource {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(match self {
             Self::Dipole => "dipole",
@@ -149,7 +179,7 @@ impl fmt::Display for Source {
     }
 }
 
-impl FromStr for Source {
+impl FromStr for ProfileSource {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
@@ -186,9 +216,11 @@ mod tests {
         ] {
             let medium = Medium::new(1.0 - albedo, albedo, index).unwrap();
             let layers = [TissueLayer { medium, thickness_mm: f64::INFINITY }];
-            for (source, off) in
-                [(Source::Dipole, dipole), (Source::BetterDipole, better), (Source::Beam, beam)]
-            {
+            for (source, off) in [
+                (ProfileSource::Dipole, dipole),
+                (ProfileSource::BetterDipole, better),
+                (ProfileSource::Beam, beam),
+            ] {
                 let total = source.profile(&layers).unwrap().total();
                 let ours = 100.0 * (total / truth - 1.0);
                 assert!((ours - off).abs() < 0.35, "{source} {index} {albedo}: {ours:.2} against {off}");
@@ -197,22 +229,40 @@ mod tests {
     }
 
     #[test]
+    fn a_rough_surface_is_for_those_who_know_it() {
+        let endless = [layer(1.4, f64::INFINITY)];
+        let total = |source: ProfileSource, share| {
+            source.profile_under_rough_surface(&endless, share).map(|profile| profile.total())
+        };
+        // Half-space or stack of one, the same; the more gets in, the more gets out.
+        let [dipole, stack] =
+            [ProfileSource::Dipole, ProfileSource::Multipole].map(|s| total(s, 0.9).unwrap());
+        assert!((dipole - stack).abs() < 1e-15);
+        assert!(dipole < total(ProfileSource::Dipole, 0.95).unwrap());
+        assert!(total(ProfileSource::Beam, 0.9).unwrap_err().to_string().contains("beam knows smooth"));
+        assert!(total(ProfileSource::Dipole, 0.0).unwrap_err().to_string().contains("0 to 1, got 0"));
+    }
+
+    #[test]
     fn names_are_read_as_they_are_written() {
-        for source in Source::ALL {
+        for source in ProfileSource::ALL {
             assert_eq!(source.to_string().parse(), Ok(source));
         }
-        assert!("tripole".parse::<Source>().unwrap_err().contains("dipole, better-dipole"));
+        assert!("tripole".parse::<ProfileSource>().unwrap_err().contains("dipole, better-dipole"));
     }
 
     #[test]
     fn each_source_says_what_it_does_not_know() {
         let endless = layer(1.4, f64::INFINITY);
-        assert_eq!(Source::usual(&[endless]), Source::Dipole);
-        assert_eq!(Source::usual(&[layer(1.4, 2.0), endless]), Source::Multipole);
-        let told = |source: Source, layers: &[TissueLayer]| source.profile(layers).err().unwrap().to_string();
-        assert!(told(Source::Beam, &[layer(1.4, 2.0)]).contains("beam knows one half-space"));
-        assert!(told(Source::MonteCarlo, &[endless]).contains("has to be simulated"));
-        assert!(told(Source::Beam, &[layer(0.8, f64::INFINITY)]).contains("at least 1, got 0.8"));
-        assert!(told(Source::Multipole, &[]).contains("at least one layer"));
+        assert_eq!(ProfileSource::default_for(&[endless]), ProfileSource::Dipole);
+        assert_eq!(ProfileSource::default_for(&[layer(1.4, 2.0), endless]), ProfileSource::Multipole);
+        let told =
+            |source: ProfileSource, layers: &[TissueLayer]| source.profile(layers).err().unwrap().to_string();
+        assert!(
+            told(ProfileSource::Beam, &[layer(1.4, 2.0)]).contains("beam is for one infinitely thick layer")
+        );
+        assert!(told(ProfileSource::MonteCarlo, &[endless]).contains("has to be simulated"));
+        assert!(told(ProfileSource::Beam, &[layer(0.8, f64::INFINITY)]).contains("at least 1, got 0.8"));
+        assert!(told(ProfileSource::Multipole, &[]).contains("at least one layer"));
     }
 }

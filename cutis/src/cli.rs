@@ -1,12 +1,15 @@
 //! The words of the command line and what they mean, as plain values. What they may be is checked in
 //! [`crate::job`].
 
+mod profile;
+
 use crate::talk;
 use clap::builder::PossibleValuesParser;
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
 use cutis_render::film::ToneMapper;
 use cutis_render::{Aov, AovSpace, Diffusion, Settings, TechniqueName};
+pub use profile::{METHODS, ProfileArgs};
 use std::fmt::Display;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -38,6 +41,8 @@ pub struct Cli {
 pub enum Command {
     /// Render a picture of a scene, or of the built-in head
     Render(Box<RenderArgs>),
+    /// Compute a diffusion profile, fit it by Gaussians, plot it, export it
+    Profile(Box<ProfileArgs>),
     /// Simulate light in layered slabs by Monte Carlo
     Simulate(SimulateArgs),
     /// List the materials, heads, environments and techniques that ship inside

@@ -10,12 +10,14 @@ mod job;
 mod layer_words;
 mod machine;
 mod presets;
+mod profile;
 mod progress;
 mod render;
 mod report;
 mod scene_source;
 mod simulate;
 mod talk;
+mod whole_file;
 
 use cli::{Cli, Command};
 use std::process::ExitCode;
@@ -47,6 +49,7 @@ fn main() -> ExitCode {
 fn run(cli: &Cli) -> miette::Result<Outcome> {
     match &cli.command {
         Command::Render(args) => render::run(args, cli.verbose),
+        Command::Profile(args) => profile::run(args, cli.verbose),
         Command::Simulate(args) => simulate::run(args, cli.verbose),
         Command::Presets(args) => presets::run(args),
         Command::Completions(args) => completions::run(args),

@@ -90,9 +90,7 @@ pub fn run(args: &SimulateArgs, verbose: u8) -> miette::Result<Outcome> {
 
 /// The arguments, checked.
 fn simulation(args: &SimulateArgs) -> miette::Result<Simulation> {
-    if !(2 * BATCH..=1_000_000_000_000).contains(&args.photons) {
-        bail!("--photons must be {} to 10^12, got {}", 2 * BATCH, args.photons);
-    }
+    photons_in_range(args.photons)?;
     in_range("--rings", args.rings, 1..=100_000, "1 to 100000")?;
     let layers = args.layer.iter().map(|words| parse_layer(words)).collect::<miette::Result<Vec<Layer>>>()?;
     let radial_step_mm = args.ring_width.unwrap_or_else(|| ring_width_mm(&layers));
@@ -114,6 +112,14 @@ fn simulation(args: &SimulateArgs) -> miette::Result<Simulation> {
     Ok(Simulation { slab, grid, seed: args.seed })
 }
 
+/// Checks `--photons`.
+pub fn photons_in_range(photons: u64) -> miette::Result<()> {
+    if !(2 * BATCH..=1_000_000_000_000).contains(&photons) {
+        bail!("--photons must be {} to 10^12, got {photons}", 2 * BATCH);
+    }
+    Ok(())
+}
+
 /// Rings unless told otherwise.
 pub fn default_rings() -> usize {
     RINGS
@@ -125,7 +131,7 @@ fn ring_width_mm(layers: &[Layer]) -> f64 {
 }
 
 /// Batches on all threads, added up in their order, so that the number of threads changes nothing.
-fn in_parallel(simulation: &Simulation, photons: u64, bar: &Bar) -> Estimates {
+pub fn in_parallel(simulation: &Simulation, photons: u64, bar: &Bar) -> Estimates {
     let mut estimates = Estimates::new(&simulation.grid, simulation.slab.layers().len());
     let batches = photons.div_ceil(BATCH);
     bar.begin("simulate", photons);

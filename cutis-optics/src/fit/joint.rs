@@ -1,7 +1,7 @@
 //! One set of variances for several profiles: red, green and blue, or any number of wavelengths.
 
 use super::problem::{Problem, Solution};
-use super::{FitError, FitMethod, check_count, starts};
+use super::{FitError, FitMethod, check_count, check_mean_free_path, starts};
 use crate::{Dipole, Gaussian, GaussianSum, Medium, Profile, RgbGaussianSum};
 
 /// Several profiles over shared variances.
@@ -37,13 +37,20 @@ pub struct RgbFit {
 }
 
 /// Fits `gaussians` shared variances to any number of profiles: no negative weight, Σ w = R_d for every profile, the least
-/// sum of squared relative power errors. Variances that no profile uses are left out.
+/// sum of squared relative power errors. Variances that no profile uses are left out, unless the sums are for a chain of
+/// seven-tap blurs (`seven_tap_mm`, see [`super::FitSettings`]).
 ///
 /// # Errors
 /// If the number of Gaussians is out of range, there is no profile, or one has no total or scale.
-pub fn fit_joint(profiles: &[&dyn Profile], gaussians: usize) -> Result<JointFit, FitError> {
+pub fn fit_joint(
+    profiles: &[&dyn Profile],
+    gaussians: usize,
+    seven_tap_mm: Option<f64>,
+) -> Result<JointFit, FitError> {
     check_count(gaussians)?;
-    let problem = Problem::new(profiles, FitMethod::Energy)?;
+    check_mean_free_path(seven_tap_mm)?;
+    let mut problem = Problem::new(profiles, FitMethod::Energy)?;
+    problem.limit(seven_tap_mm);
     let solution = starts::best_solution(&problem, gaussians)?;
     Ok(JointFit::new(&problem, &solution, profiles))
 }
@@ -76,8 +83,9 @@ impl JointFit {
     fn new(problem: &Problem, solution: &Solution, profiles: &[&dyn Profile]) -> Self {
         let weights: Vec<Vec<f64>> = (0..profiles.len()).map(|i| problem.weights(solution, i)).collect();
         let variances_mm2 = solution.variances_mm2();
-        let mut used: Vec<usize> =
-            (0..variances_mm2.len()).filter(|&i| weights.iter().any(|w| w[i] != 0.0)).collect();
+        let chained = problem.limits().is_some();
+        let is_used = |i: &usize| chained || weights.iter().any(|w| w[*i] != 0.0);
+        let mut used: Vec<usize> = (0..variances_mm2.len()).filter(is_used).collect();
         used.sort_by(|&i, &j| variances_mm2[i].total_cmp(&variances_mm2[j]));
         let chosen = |values: &[f64]| used.iter().map(|&i| values[i]).collect::<Vec<_>>();
         let weights: Vec<Vec<f64>> = weights.iter().map(|w| chosen(w)).collect();
@@ -110,16 +118,25 @@ impl JointFit {
 /// # Errors
 /// As [`fit_joint`].
 pub fn fit_rgb(profiles: [&dyn Profile; 3], gaussians: usize) -> Result<RgbFit, FitError> {
-    let joint = fit_joint(&profiles, gaussians)?;
-    let row = |(i, &v): (usize, &f64)| (v, [0, 1, 2].map(|c| joint.weights[c][i]));
-    let three = |values: &[f64]| [values[0], values[1], values[2]];
-    Ok(RgbFit {
-        method: joint.method,
-        kernel: RgbGaussianSum::from_rows(joint.variances_mm2.iter().enumerate().map(row).collect()),
-        relative_rms_power_error: three(&joint.relative_rms_power_error),
-        energy: three(&joint.energy),
-        total_diffuse_reflectance: three(&joint.total_diffuse_reflectance),
-    })
+    Ok(RgbFit::from_joint(&fit_joint(&profiles, gaussians, None)?))
+}
+
+impl RgbFit {
+    /// A fit of three profiles, as red, green and blue.
+    ///
+    /// # Panics
+    /// If there are fewer than three.
+    pub fn from_joint(joint: &JointFit) -> Self {
+        let row = |(i, &v): (usize, &f64)| (v, [0, 1, 2].map(|c| joint.weights[c][i]));
+        let three = |values: &[f64]| [values[0], values[1], values[2]];
+        Self {
+            method: joint.method,
+            kernel: RgbGaussianSum::from_rows(joint.variances_mm2.iter().enumerate().map(row).collect()),
+            relative_rms_power_error: three(&joint.relative_rms_power_error),
+            energy: three(&joint.energy),
+            total_diffuse_reflectance: three(&joint.total_diffuse_reflectance),
+        }
+    }
 }
 
 /// The kernel of three media seen through the dipole, ready for a renderer; six Gaussians are a good number.

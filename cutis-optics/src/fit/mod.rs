@@ -153,9 +153,7 @@ pub fn fit(profile: &dyn Profile, gaussians: usize, method: FitMethod) -> Result
 pub fn fit_with(profile: &dyn Profile, settings: &FitSettings) -> Result<Fit, FitError> {
     let &FitSettings { gaussians, method, seven_tap_mm } = settings;
     check_count(gaussians)?;
-    if let Some(value) = seven_tap_mm.filter(|l| !(*l > 0.0 && l.is_finite())) {
-        return Err(FitError::MeanFreePath { value });
-    }
+    check_mean_free_path(seven_tap_mm)?;
     let sum = match method {
         FitMethod::Optimal | FitMethod::Energy => {
             let mut problem = Problem::new(&[profile], method)?;
@@ -212,6 +210,13 @@ pub fn relative_rms_power_error(profile: &dyn Profile, sum: &GaussianSum) -> Res
 
 fn check_count(count: usize) -> Result<(), FitError> {
     if (1..=GAUSSIANS_MAX).contains(&count) { Ok(()) } else { Err(FitError::GaussianCount { count }) }
+}
+
+fn check_mean_free_path(mean_free_path_mm: Option<f64>) -> Result<(), FitError> {
+    match mean_free_path_mm.filter(|l| !(*l > 0.0 && l.is_finite())) {
+        Some(value) => Err(FitError::MeanFreePath { value }),
+        None => Ok(()),
+    }
 }
 
 fn into_fit(problem: &Problem, solution: Solution, profile: &dyn Profile, method: FitMethod) -> Fit {

@@ -131,7 +131,7 @@ fn eight_dipoles() -> Vec<Dipole> {
 fn any_number_of_wavelengths_share_variances() {
     let dipoles = eight_dipoles();
     let profiles: Vec<&dyn Profile> = dipoles.iter().map(|d| d as &dyn Profile).collect();
-    let f = fit_joint(&profiles, 8).unwrap();
+    let f = fit_joint(&profiles, 8, None).unwrap();
     assert!(f.variances_mm2.len() <= 8 && f.variances_mm2.windows(2).all(|v| v[0] < v[1]));
     for (i, d) in dipoles.iter().enumerate() {
         assert!((f.energy[i] / d.total() - 1.0).abs() < 16.0 * f64::EPSILON, "{i}");

@@ -1,0 +1,74 @@
+//! `--explain`: the numbers behind a profile, whether to believe them, and what more Gaussians would buy.
+
+use super::Profiled;
+use super::channel::Channel;
+use cutis_optics::{DiffusionValidity, FitMethod, Medium, Stack, fit};
+use miette::{Result, miette};
+use serde::Serialize;
+
+/// Numbers of Gaussians that are tried.
+const TRIED: std::ops::RangeInclusive<usize> = 1..=8;
+
+/// A channel, explained.
+#[derive(Serialize)]
+pub struct Explanation {
+    pub total_diffuse_reflectance: f64,
+    /// 0 for a half-space; null for a kernel, which does not know.
+    pub total_transmittance: Option<f64>,
+    pub layers: Vec<LayerExplanation>,
+    pub fits: Vec<Trial>,
+}
+
+/// Lengths of a layer, and whether diffusion holds in it.
+#[derive(Serialize)]
+pub struct LayerExplanation {
+    pub albedo_reduced: f64,
+    /// 1/sigma_t': from one scattering to the next, phase function reduced.
+    pub transport_mean_free_path_mm: f64,
+    /// 1/sigma_tr: how far diffused light gets; null without absorption.
+    pub diffuse_mean_free_path_mm: Option<f64>,
+    pub diffusion_holds: bool,
+    pub verdict: String,
+}
+
+/// What a number of Gaussians leaves.
+#[derive(Serialize)]
+pub struct Trial {
+    pub gaussians: usize,
+    pub relative_rms_power_error: f64,
+    pub energy: f64,
+}
+
+/// An explanation for each channel.
+pub fn all(profiled: &Profiled, method: FitMethod) -> Result<Vec<Explanation>> {
+    profiled.channels.iter().map(|channel| explanation(channel, method)).collect()
+}
+
+fn explanation(channel: &Channel, method: FitMethod) -> Result<Explanation> {
+    // Transmittance is a matter of the whole stack, whichever model gave the reflectance.
+    let stack = Stack::in_air(&channel.layers).ok();
+    let media = channel.layers.iter().map(|layer| &layer.medium);
+    Ok(Explanation {
+        total_diffuse_reflectance: channel.profile.total(),
+        total_transmittance: stack.map(|stack| stack.transmittance_spectrum(0.0)),
+        layers: media.zip(channel.validity()).map(|(medium, verdict)| layer(medium, verdict)).collect(),
+        fits: TRIED.map(|gaussians| trial(channel, gaussians, method)).collect::<Result<_>>()?,
+    })
+}
+
+fn layer(medium: &Medium, validity: DiffusionValidity) -> LayerExplanation {
+    let diffuse_mm = medium.diffuse_mean_free_path_mm();
+    LayerExplanation {
+        albedo_reduced: medium.albedo_reduced(),
+        transport_mean_free_path_mm: medium.transport_mean_free_path_mm(),
+        diffuse_mean_free_path_mm: diffuse_mm.is_finite().then_some(diffuse_mm),
+        diffusion_holds: validity.is_good(),
+        verdict: validity.to_string(),
+    }
+}
+
+fn trial(channel: &Channel, gaussians: usize, method: FitMethod) -> Result<Trial> {
+    let fit = fit(&*channel.profile, gaussians, method)
+        .map_err(|error| miette!("{gaussians} Gaussians: {error}"))?;
+    Ok(Trial { gaussians, relative_rms_power_error: fit.relative_rms_power_error, energy: fit.energy })
+}

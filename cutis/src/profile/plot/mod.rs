@@ -1,0 +1,85 @@
+//! `--plot`: four panels on profile, fit, residual and spectrum, as SVG or PNG.
+//!
+//! The font for PNG is inside the program (Ubuntu Light, Ubuntu font licence, from the crate `epaint_default_fonts`), so that
+//! a machine without fonts draws the same picture; an SVG names `sans-serif` and leaves it to whoever shows it.
+
+mod axes;
+mod panels;
+mod sampled;
+
+use super::Profiled;
+use crate::whole_file;
+use image::imageops::FilterType;
+use image::{ImageFormat, RgbImage};
+use miette::{IntoDiagnostic, Result, miette};
+use panels::{Figure, draw};
+use plotters::prelude::{BitMapBackend, IntoDrawingArea, SVGBackend};
+use plotters::style::{FontStyle, register_font};
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+/// Size of the figure in points.
+const SIZE: (u32, u32) = (1200, 900);
+/// Dots of a PNG per point.
+const DOTS_PER_POINT: u32 = 2;
+/// Dots drawn for one of the PNG, each way: edges of lines are smoothed by their mean.
+const OVERSAMPLING: u32 = 2;
+
+/// A picture to write.
+pub struct PlotFile {
+    path: PathBuf,
+    kind: Kind,
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Svg,
+    Png,
+}
+
+impl PlotFile {
+    /// Refuses every extension but .svg and .png.
+    pub fn new(path: &Path) -> Result<Self> {
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let kind = match extension.as_str() {
+            "svg" => Kind::Svg,
+            "png" => Kind::Png,
+            _ => return Err(miette!("{}: a plot is written as .svg or .png", path.display())),
+        };
+        Ok(Self { path: path.to_owned(), kind })
+    }
+
+    /// Draws and writes.
+    pub fn write(&self, profiled: &Profiled) -> Result<()> {
+        register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
+            .map_err(|_| miette!("the font inside the program is broken"))?;
+        let figure = Figure::new(profiled);
+        let bytes = match self.kind {
+            Kind::Svg => svg(&figure)?.into_bytes(),
+            Kind::Png => png(&figure)?,
+        };
+        whole_file::write(&self.path, &bytes)
+    }
+}
+
+fn svg(figure: &Figure) -> Result<String> {
+    let mut text = String::new();
+    draw(figure, &SVGBackend::with_string(&mut text, SIZE).into_drawing_area(), 1)
+        .map_err(|error| miette!("the plot cannot be drawn: {error}"))?;
+    Ok(text)
+}
+
+fn png(figure: &Figure) -> Result<Vec<u8>> {
+    let scale = DOTS_PER_POINT * OVERSAMPLING;
+    let (width, height) = (SIZE.0 * scale, SIZE.1 * scale);
+    let mut dots = vec![0; (3 * width * height) as usize];
+    draw(figure, &BitMapBackend::with_buffer(&mut dots, (width, height)).into_drawing_area(), scale)
+        .map_err(|error| miette!("the plot cannot be drawn: {error}"))?;
+    let large =
+        RgbImage::from_raw(width, height, dots).ok_or_else(|| miette!("the plot has lost its size"))?;
+    let picture =
+        image::imageops::resize(&large, width / OVERSAMPLING, height / OVERSAMPLING, FilterType::Triangle);
+    let mut bytes = Cursor::new(Vec::new());
+    picture.write_to(&mut bytes, ImageFormat::Png).into_diagnostic()?;
+    Ok(bytes.into_inner())
+}

@@ -1,0 +1,103 @@
+//! The profile of some layers by the source that is asked for.
+
+use super::job::Job;
+use crate::progress::Bar;
+use crate::simulate::in_parallel;
+use cutis_optics::simulate::{Grid, Layer, LayeredSlab, Simulation};
+use cutis_optics::{BoxedProfile, Medium, ProfileSource, RingProfile, TissueLayer, WideBeam};
+use cutis_render::prepare::RhoDt;
+use miette::{Result, miette};
+
+/// Standard deviation of the beam that profiles with a peak are seen under, in transport mean free paths, unless told
+/// otherwise.
+const BEAM_MEAN_FREE_PATHS: f64 = 0.05;
+/// Width of a ring of the simulation, in transport mean free paths of the top layer.
+const RING_MEAN_FREE_PATHS: f64 = 0.05;
+/// Rings reach to where e^-12 of the slowest decay is left, …
+const REACH_EXPONENT: f64 = 12.0;
+/// … but are so many at least and at most.
+const RINGS: (f64, f64) = (200.0, 4000.0);
+
+/// A profile, and how it is seen.
+pub struct Sourced {
+    pub profile: BoxedProfile,
+    /// Standard deviation of the beam, mm; none for a point.
+    pub beam_standard_deviation_mm: Option<f64>,
+    /// What chance may have done to the total, where it was simulated.
+    pub total_standard_error: Option<f64>,
+}
+
+/// The profile of `layers` as the job asks for it.
+pub fn of_layers(job: &Job, source: ProfileSource, layers: &[TissueLayer]) -> Result<Sourced> {
+    let (point, total_standard_error) = match source {
+        ProfileSource::MonteCarlo => {
+            let (profile, error) = simulated(job, layers)?;
+            (profile, Some(error))
+        }
+        _ => (computed(job, source, layers)?, None),
+    };
+    let usual_mm = || {
+        let l_mm = layers[0].medium.transport_mean_free_path_mm();
+        source.has_peak().then_some(BEAM_MEAN_FREE_PATHS * l_mm)
+    };
+    let beam_standard_deviation_mm = job.beam_mm.or_else(usual_mm);
+    let profile: BoxedProfile = match beam_standard_deviation_mm {
+        Some(deviation_mm) => Box::new(WideBeam::new(point, deviation_mm)),
+        None => point,
+    };
+    Ok(Sourced { profile, beam_standard_deviation_mm, total_standard_error })
+}
+
+fn computed(job: &Job, source: ProfileSource, layers: &[TissueLayer]) -> Result<BoxedProfile> {
+    let profile = match job.roughness {
+        Some(roughness) => source.profile_under_rough_surface(layers, lets_in(&layers[0].medium, roughness)),
+        None => source.profile(layers),
+    };
+    profile.map_err(|error| miette!("{error}"))
+}
+
+/// Share of isotropic light that a rough surface lets in.
+fn lets_in(medium: &Medium, roughness: f32) -> f64 {
+    let n = medium.refractive_index;
+    let f0 = ((n - 1.0) / (n + 1.0)).powi(2);
+    f64::from(RhoDt::new(f0 as f32).mean(roughness, 1.0))
+}
+
+/// A simulated profile, and the standard error of its total.
+fn simulated(job: &Job, layers: &[TissueLayer]) -> Result<(BoxedProfile, f64)> {
+    if job.roughness.is_some() {
+        return Err(miette!("the source monte-carlo knows smooth surfaces only: leave --roughness out"));
+    }
+    let slab = LayeredSlab::in_air(layers.iter().map(isotropic).collect()).map_err(|e| miette!("{e}"))?;
+    let entered = 1.0 - slab.specular_reflectance();
+    let simulation = Simulation { slab, grid: grid(layers), seed: job.seed };
+    let bar = Bar::new(job.verbose);
+    let estimates = in_parallel(&simulation, job.photons, &bar);
+    bar.finish();
+    let error = estimates.diffuse_reflectance().standard_error / entered;
+    Ok((Box::new(RingProfile::from_estimates(&estimates)), error))
+}
+
+/// Reduced scattering has no phase function: isotropic, as all other sources take it.
+fn isotropic(layer: &TissueLayer) -> Layer {
+    Layer {
+        sigma_a_per_mm: layer.medium.sigma_a_per_mm,
+        sigma_s_per_mm: layer.medium.sigma_s_reduced_per_mm,
+        g: 0.0,
+        refractive_index: layer.medium.refractive_index,
+        thickness_mm: layer.thickness_mm,
+    }
+}
+
+fn grid(layers: &[TissueLayer]) -> Grid {
+    let radial_step_mm = RING_MEAN_FREE_PATHS * layers[0].medium.transport_mean_free_path_mm();
+    let slowest_per_mm = layers.iter().map(|l| l.medium.sigma_tr_per_mm()).fold(f64::INFINITY, f64::min);
+    let rings = (REACH_EXPONENT / (slowest_per_mm * radial_step_mm)).clamp(RINGS.0, RINGS.1);
+    Grid {
+        radial_step_mm,
+        radial_bins: rings as usize,
+        depth_step_mm: radial_step_mm,
+        depth_bins: 1,
+        cosine_bins: 1,
+    }
+}

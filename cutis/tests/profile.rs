@@ -1,0 +1,375 @@
+//! `cutis profile` from outside.
+
+mod common;
+
+use common::{names, run, stderr, stdout};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+fn json_in(folder: &Path, words: &[&str]) -> Value {
+    let output = run(folder, &[&["profile", "--json"], words].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    serde_json::from_str(&stdout(&output)).expect("one JSON object and nothing else")
+}
+
+fn json(words: &[&str]) -> Value {
+    json_in(tempfile::tempdir().expect("a folder").path(), words)
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is a number"))
+}
+
+const TWO_LAYERS: &str = r#"
+name = "two layers"
+[[layer]]
+sigma_a_per_mm = [0.1, 0.2, 0.5]
+sigma_s_per_mm = 24
+g = 0.8
+refractive_index = 1.4
+thickness_mm = 0.5
+[[layer]]
+sigma_a_per_mm = 0.05
+sigma_s_reduced_per_mm = [2.0, 2.5, 3.0]
+refractive_index = 1.38
+"#;
+
+#[test]
+fn one_channel_is_the_flat_object_of_the_contract() {
+    let report = json(&["skin1", "--channel", "r", "--gaussians", "4"]);
+    assert_eq!(
+        (&report["material"], &report["channel"], &report["source"]),
+        (&"skin1".into(), &"r".into(), &"dipole".into())
+    );
+    let layer = &report["layers"][0];
+    assert_eq!((number(&layer["sigma_a_per_mm"]), number(&layer["sigma_s_reduced_per_mm"])), (0.032, 0.74));
+    assert_eq!((number(&layer["refractive_index"]), &layer["thickness_mm"]), (1.3, &Value::Null));
+    let total = number(&report["total_diffuse_reflectance"]);
+    let fit = &report["fit"];
+    assert_eq!(fit["method"], "energy");
+    assert!((number(&fit["energy"]) - total).abs() < 1e-12, "{fit}");
+    // Known optimum under the constraint of energy for four Gaussians, in percent: 0.4554.
+    assert!((number(&fit["relative_rms_power_error"]) - 0.004554).abs() < 1e-5, "{fit}");
+    assert_eq!(fit["weights"].as_array().map(Vec::len), Some(4));
+    assert_eq!(fit["variances_mm2"].as_array().map(Vec::len), Some(4));
+    assert!(number(&report["wall_seconds"]) > 0.0);
+    let optimal = json(&["skin1", "--channel", "r", "--gaussians", "4", "--fit", "optimal"]);
+    assert!((number(&optimal["fit"]["relative_rms_power_error"]) - 0.004036).abs() < 1e-5);
+    assert!(number(&optimal["fit"]["energy"]) < total);
+}
+
+#[test]
+fn three_channels_come_with_a_joint_kernel() {
+    let report = json(&["skin2", "--gaussians", "4"]);
+    let channels = report["channels"].as_array().expect("a list");
+    assert_eq!(channels.len(), 3);
+    let joint = &report["joint_kernel"];
+    for (c, channel) in channels.iter().enumerate() {
+        assert_eq!(channel["channel"], ["r", "g", "b"][c]);
+        assert!((number(&joint["energy"][c]) - number(&channel["total_diffuse_reflectance"])).abs() < 1e-9);
+        // Shared variances cannot do better than their own.
+        let shared = number(&joint["relative_rms_power_error"][c]);
+        assert!(shared >= 0.999 * number(&channel["fit"]["relative_rms_power_error"]), "{c}");
+    }
+    assert_eq!(joint["weights"].as_array().map(Vec::len), joint["variances_mm2"].as_array().map(Vec::len));
+}
+
+#[test]
+fn a_preset_that_is_a_kernel_comes_as_it_is() {
+    let report = json(&["three-layer-skin"]);
+    let red = &report["channels"][0];
+    assert_eq!((&red["source"], &red["fit"]["method"]), (&"kernel".into(), &"given".into()));
+    assert_eq!(red["layers"].as_array().map(Vec::len), Some(0));
+    assert_eq!(red["fit"]["variances_mm2"].as_array().map(Vec::len), Some(6));
+    let fewer = json(&["three-layer-skin", "--channel", "r", "--gaussians", "3"]);
+    assert_eq!(fewer["fit"]["method"], "energy");
+    assert!(number(&fewer["fit"]["relative_rms_power_error"]) > 0.001);
+}
+
+#[test]
+fn layers_from_words_and_from_a_file_are_the_same() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("two.toml"), TWO_LAYERS).expect("written");
+    let file = json_in(folder.path(), &["two.toml", "--channel", "g", "--gaussians", "3"]);
+    let words = json(&[
+        "--layer",
+        "mu_a=0.2,mu_s=24,g=0.8,n=1.4,d=0.5",
+        "--layer",
+        "mu_a=0.05,mu_s=2.5,n=1.38",
+        "--gaussians",
+        "3",
+    ]);
+    assert_eq!((&file["material"], &file["source"]), (&"two layers".into(), &"multipole".into()));
+    assert_eq!(words["channel"], Value::Null);
+    for key in ["layers", "total_diffuse_reflectance"] {
+        assert_eq!(file[key], words[key], "{key}");
+    }
+    assert_eq!(file["fit"]["weights"], words["fit"]["weights"]);
+    let half_space = json(&["--layer", "mu_a=0.032,mu_s=0.74,n=1.3", "--gaussians", "2"]);
+    assert_eq!(half_space["source"], "dipole");
+}
+
+#[test]
+fn an_explanation_tells_lengths_apart_and_says_where_diffusion_fails() {
+    let report = json(&["skin1", "--channel", "b", "--gaussians", "2", "--explain"]);
+    let explained = &report["explanation"];
+    // 1/(0.48 + 1.01) and 1/sqrt(3 · 0.48 · 1.49) by pocket calculator.
+    let layer = &explained["layers"][0];
+    assert!((number(&layer["transport_mean_free_path_mm"]) - 0.671_141).abs() < 1e-6);
+    assert!((number(&layer["diffuse_mean_free_path_mm"]) - 0.682_696).abs() < 1e-5);
+    assert_eq!(layer["diffusion_holds"], false);
+    assert!(layer["verdict"].as_str().expect("words").contains("simulate"));
+    assert_eq!(number(&explained["total_transmittance"]), 0.0);
+    let errors: Vec<f64> = explained["fits"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|trial| number(&trial["relative_rms_power_error"]))
+        .collect();
+    assert_eq!(errors.len(), 8);
+    assert!(errors.windows(2).all(|pair| pair[1] <= pair[0]), "{errors:?}");
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = run(folder.path(), &["profile", "skin1", "--channel", "b", "--gaussians", "2"]);
+    assert!(stderr(&output).contains("reduced albedo 0.6779"), "{}", stderr(&output));
+    assert!(stdout(&output).contains("skin1") && !stdout(&output).contains("reduced albedo"));
+    let sheet = json(&["--layer", "mu_a=0,mu_s=5,n=1.4,d=1", "--gaussians", "1", "--explain"]);
+    let both =
+        number(&sheet["total_diffuse_reflectance"]) + number(&sheet["explanation"]["total_transmittance"]);
+    assert!((both - 1.0).abs() < 1e-12, "without absorption all light comes out: {both}");
+}
+
+#[test]
+fn plots_are_pictures_with_lines_and_words() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let words = ["profile", "skin1", "--gaussians", "2", "--plot"];
+    for name in ["a.svg", "a.png"] {
+        let output = run(folder.path(), &[&words[..], &[name]].concat());
+        assert!(output.status.success(), "{}", stderr(&output));
+    }
+    let svg = fs::read_to_string(folder.path().join("a.svg")).expect("written");
+    assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
+    for told in ["skin1: dipole", "r R(r) [1/mm]", "R(r) [1/mm²]", "k [1/mm]", "Jensen"] {
+        assert!(svg.contains(told), "{told}");
+    }
+    assert!(svg.matches("<polyline").count() > 20);
+    let picture = image::open(folder.path().join("a.png")).expect("a PNG").to_rgb8();
+    assert_eq!(picture.dimensions(), (2400, 1800));
+    let like = |wanted: [u8; 3]| {
+        let near = |p: &&image::Rgb<u8>| p.0.iter().zip(wanted).all(|(a, b)| a.abs_diff(b) < 40);
+        picture.pixels().filter(near).count()
+    };
+    // Each channel's lines are there, and words in dark ink: in the title's strip nothing else is dark.
+    for pen in [[196, 30, 30], [20, 130, 50], [30, 70, 190]] {
+        assert!(like(pen) > 1000, "{pen:?}");
+    }
+    let title = image::imageops::crop_imm(&picture, 0, 0, 2400, 60).to_image();
+    assert!(title.pixels().filter(|p| p.0[0] < 100).count() > 500, "the title has ink");
+    assert_eq!(names(folder.path()), ["a.png", "a.svg"]);
+}
+
+#[test]
+fn every_export_is_what_its_name_says() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut words = vec!["profile", "skin1", "--gaussians", "3"];
+    for name in ["k.json", "k.csv", "k.wgsl", "k.glsl", "k.hlsl", "m.mtlx", "m.gltf"] {
+        words.extend(["--export", name]);
+    }
+    let output = run(folder.path(), &words);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).expect("written");
+    let kernel: Value = serde_json::from_str(&read("k.json")).expect("JSON");
+    assert_eq!(kernel["weights"][0].as_array().map(Vec::len), Some(3));
+    assert!(read("k.csv").contains("variance_mm2,weight_red,weight_green,weight_blue"));
+    assert!(
+        read("k.wgsl").contains("array<vec3<f32>, 3>") && read("k.glsl").contains("vec3 CUTIS_WEIGHTS[3]")
+    );
+    assert!(read("k.hlsl").contains("static const float3 CUTIS_WEIGHTS[3]"));
+    assert!(read("m.mtlx").contains("open_pbr_surface") && read("m.mtlx").contains("lin_rec709"));
+    let gltf: Value = serde_json::from_str(&read("m.gltf")).expect("JSON");
+    assert_eq!(gltf["asset"]["version"], "2.0");
+    assert!(!read("m.gltf").contains("scatter"), "drafts stay behind their flag");
+    assert!(stdout(&output).contains("loss"), "{}", stdout(&output));
+}
+
+#[test]
+fn formats_can_be_named_and_translations_are_reported() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let report = json_in(
+        folder.path(),
+        &[
+            "marble",
+            "--gaussians",
+            "3",
+            "--drafts=scatter",
+            "--export",
+            "u.json",
+            "--export",
+            "d",
+            "--export-as",
+            "unreal",
+            "--export-as",
+            "gltf",
+        ],
+    );
+    let translations = report["translations"].as_array().expect("a list");
+    assert_eq!((&translations[0]["target"], &translations[1]["target"]), (&"unreal".into(), &"gltf".into()));
+    for translation in translations {
+        for c in 0..3 {
+            let loss = &translation["loss"][c];
+            let wide = number(&loss["wide"]["relative_rms_power_error"]);
+            assert!((0.001..0.5).contains(&wide), "{loss}");
+            assert!(number(&loss["relative_change_of_total"]).abs() < 1e-9);
+        }
+        let fields = translation["fields"].as_array().expect("a list");
+        assert!(
+            fields.iter().all(|f| f["unit"].is_string() && f["meaning"].is_string() && !f["value"].is_null())
+        );
+    }
+    let draft = fs::read_to_string(folder.path().join("d")).expect("written");
+    assert!(draft.contains("KHR_materials_scatter"), "{draft}");
+}
+
+#[test]
+fn every_source_and_every_method_gives_a_profile_of_its_own() {
+    let total = |words: &[&str]| number(&json(words)["total_diffuse_reflectance"]);
+    let skin = ["skin1", "--channel", "r", "--source"];
+    let of = |source| total(&[&skin[..], &[source]].concat());
+    let dipole = of("dipole");
+    assert!((of("multipole") - dipole).abs() < 1e-12);
+    // With what was scattered once, and without diffusion theory's excess: all within a tenth of each other.
+    for other in ["better-dipole", "beam"] {
+        assert!((of(other) / dipole - 1.0).abs() < 0.1 && of(other) != dipole, "{other}");
+    }
+    let simulated = [&skin[..], &["monte-carlo", "--photons", "40000", "--seed", "3"]].concat();
+    let report = json(&simulated);
+    let (value, error) = (
+        number(&report["total_diffuse_reflectance"]),
+        number(&report["total_diffuse_reflectance_standard_error"]),
+    );
+    // 40,000 packets; the beam source is within 4 % of the truth at this albedo and index.
+    assert!(error > 0.0 && error < 0.005, "{error}");
+    assert!((value / of("beam") - 1.0).abs() < 0.06 + 4.0 * error / value, "{value}");
+    assert!(number(&report["beam_standard_deviation_mm"]) > 0.0);
+    assert_eq!(json(&[&simulated[..], &["--threads", "1"]].concat())["fit"], report["fit"]);
+    for (method, gaussians) in [("fast", "8"), ("powers", "12")] {
+        let report = json(&["skin1", "--channel", "r", "--fit", method, "--gaussians", gaussians]);
+        assert_eq!(report["fit"]["method"], method);
+        assert!(number(&report["fit"]["relative_rms_power_error"]) < 0.05, "{method}: {}", report["fit"]);
+    }
+    let rough = total(&["skin1", "--channel", "r", "--roughness", "0.4"]);
+    assert!(rough > dipole, "a rough surface holds less back: {rough} against {dipole}");
+}
+
+#[test]
+fn seven_taps_bound_the_variances() {
+    let report = json(&["cream", "--gaussians", "4", "--seven-tap"]);
+    let variances: Vec<f64> =
+        report["joint_kernel"]["variances_mm2"].as_array().expect("a list").iter().map(number).collect();
+    assert_eq!(variances.len(), 4);
+    assert!(variances.windows(2).all(|v| v[1] <= 4.0 * v[0] * (1.0 + 1e-9)), "{variances:?}");
+    // Cream's shortest mean free path is that of red: 1/(7.38 + 0.0002) mm.
+    assert!(variances[0] <= (1.0f64 / 7.3802).powi(2) * (1.0 + 1e-9), "{variances:?}");
+}
+
+#[test]
+fn nonsense_ends_with_code_2_and_one_clear_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let cases: &[(&[&str], &str)] = &[
+        (&[], "give a MATERIAL"),
+        (&["skin3"], "the nearest name is \"skin1\""),
+        (&["nowhere.toml"], "nowhere.toml: there is no such file"),
+        (&["skin1", "--gaussians", "0"], "--gaussians must be 1 to 16, got 0"),
+        (&["skin1", "--gaussians", "17"], "--gaussians must be 1 to 16, got 17"),
+        (&["skin1", "--channel", "x"], "[possible values: r, g, b]"),
+        (&["skin1", "--fit", "magic"], "optimal, energy"),
+        (&["skin1", "--source", "tripole"], "dipole, better-dipole, multipole, beam, monte-carlo"),
+        (&["skin1", "--source", "monte-carlo", "--photons", "5"], "--photons must be 2048 to 10^12, got 5"),
+        (&["skin1", "--source", "beam", "--roughness", "0.3"], "beam knows smooth surfaces only"),
+        (&["skin1", "--roughness", "2"], "--roughness must be 0 to 1, got 2"),
+        (&["skin1", "--beam", "0"], "--beam must be above 0 mm, got 0"),
+        (&["skin1", "--fit", "fast", "--seven-tap"], "nothing to bound"),
+        (&["skin1", "--source", "beam", "--fit", "fast"], "has to know the poles"),
+        (&["skin1", "--wavelength", "550"], "has no spectra"),
+        (&["skin1", "--wavelength", "NaN"], "above 0 nm"),
+        (&["skin1", "--layer", "mu_a=1,mu_s=1"], "--layer"),
+        (&["three-layer-skin", "--source", "dipole"], "finished kernel without layers"),
+        (&["skin1", "--plot", "a.jpg"], "a.jpg: a plot is written as .svg or .png"),
+        (&["skin1", "--plot", "no/a.png"], "there is no folder no"),
+        (&["skin1", "--export", "a.xyz"], "a.xyz: the extension must be"),
+        (&["skin1", "--export", "a", "--export-as", "maya"], "unreal, hdrp, blender, openpbr, gltf"),
+        (&["skin1", "--export", "a", "--export-as", "csv", "--export-as", "csv"], "2 times for 1 files"),
+        (&["skin1", "--channel", "r", "--export", "a.mtlx"], "needs all three channels"),
+        (&["--layer", "mu_a=1,mu_s=0"], "layer 1: sigma_s_reduced_per_mm must be at least"),
+        (&["--layer", "mu_a=1,mu_s=2,g=1.5"], "layer 1: sigma_s_reduced_per_mm must not be negative"),
+        (&["--layer", "mu_a=NaN,mu_s=2"], "layer 1: sigma_a_per_mm must be finite"),
+        (&["--layer", "mu_a=0.1,mu_s=2,n=1.4,d=0.2"], "thinner than its transport mean free path"),
+        (&["--layer", "mu_a=0.1,mu_s=2,d=5", "--source", "dipole"], "use multipole or monte-carlo"),
+    ];
+    for (words, told) in cases {
+        let output = run(folder.path(), &[&["profile"], *words].concat());
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{words:?}: {said}");
+        assert!(output.stdout.is_empty(), "{words:?}");
+        let mut lines = said.lines();
+        let first = lines.next().expect("something is said");
+        assert!(first.starts_with("error: ") && first.contains(told), "{words:?}: {said}");
+        assert!(lines.all(|line| line.starts_with("help: ")), "{words:?}: {said}");
+    }
+    assert!(names(folder.path()).is_empty(), "nothing was written");
+}
+
+#[test]
+fn hostile_files_are_refused_by_name_and_place() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let one = "[[layer]]\nsigma_a_per_mm = 0.1\nsigma_s_reduced_per_mm = 2\nrefractive_index = 1.4\n";
+    let many = one.repeat(65);
+    let long = format!("# {}\n{one}", "x".repeat(1 << 20));
+    let cases: &[(&str, &str)] = &[
+        ("", "bad.toml: there must be 1 to 64 layers, got 0"),
+        ("layer = 5", "bad.toml, line 1"),
+        ("\n\n[[layer]]\ncolour = 1", "line 4: unknown field `colour`"),
+        (
+            "[[layer]]\nsigma_a_per_mm = [1, 2]\nrefractive_index = 1",
+            "line 2: expected a number, or an array of three",
+        ),
+        (
+            "[[layer]]\nsigma_a_per_mm = 1\nrefractive_index = 1.4",
+            "layer 1: give either sigma_s_reduced_per_mm, or",
+        ),
+        (
+            "[[layer]]\nsigma_a_per_mm = 1\nsigma_s_per_mm = 2\ng = 1\nrefractive_index = 1.4",
+            "layer 1: g must lie",
+        ),
+        (
+            "[[layer]]\nsigma_a_per_mm = nan\nsigma_s_reduced_per_mm = 2\nrefractive_index = 1.4",
+            "must be finite",
+        ),
+        ("[[layer]\nx", "line 1"),
+        (&many, "1 to 64 layers, got 65"),
+        (&long, "is longer than"),
+    ];
+    for (text, told) in cases {
+        fs::write(folder.path().join("bad.toml"), text).expect("written");
+        let output = run(folder.path(), &["profile", "bad.toml", "--json"]);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{told}: {said}");
+        assert!(output.stdout.is_empty() && said.lines().count() == 1, "{said}");
+        assert!(said.contains("bad.toml") && said.contains(told), "{told}: {said}");
+    }
+    fs::write(folder.path().join("bad.toml"), [0xff, 0xfe, 0x00]).expect("written");
+    assert!(stderr(&run(folder.path(), &["profile", "bad.toml"])).contains("not text in UTF-8"));
+    fs::create_dir(folder.path().join("folder.toml")).expect("made");
+    assert!(stderr(&run(folder.path(), &["profile", "folder.toml"])).contains("is not a file"));
+}
+
+#[test]
+fn the_ends_of_what_a_medium_may_be_are_drawn_and_translated() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for words in ["mu_a=1e9,mu_s=1e-9", "mu_a=0,mu_s=1e9", "mu_a=1e-12,mu_s=1e-9,n=3"] {
+        let files = ["--gaussians", "2", "--plot", "a.svg", "--export", "a.mtlx", "--export", "a.gltf"];
+        let report = json_in(folder.path(), &[&["--layer", words], &files[..]].concat());
+        assert!(number(&report["fit"]["relative_rms_power_error"]) < 1.0, "{words}");
+        assert!(report["translations"][0]["loss"][0]["wide"]["relative_rms_power_error"].is_number());
+    }
+}

@@ -36,7 +36,7 @@ pub enum DiffusionValidity {
     },
     /// Too much absorption: the total is too high (for index 1.4 by 10 % at alpha' = 0.9, by 41 % at 0.2).
     #[error(
-        "reduced albedo {albedo_reduced:.4} is below {ALBEDO_REDUCED_MIN}: the dipole reflects too much; simulate this medium instead"
+        "reduced albedo {albedo_reduced:.4} is below {ALBEDO_REDUCED_MIN}: diffusion reflects too much; take beam or monte-carlo instead"
     )]
     AlbedoTooLow {
         /// alpha'.

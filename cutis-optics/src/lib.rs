@@ -59,7 +59,7 @@ pub use fit::{
 };
 pub use gaussian_sum::{Gaussian, GaussianSum};
 pub use medium::{Medium, MediumError};
-pub use multipole::{Multipole, MultipoleError, Response};
+pub use multipole::{Multipole, MultipoleError, Response, TooThin};
 pub use photon_beam::PhotonBeam;
 pub use pole::Pole;
 pub use presets::{Preset, UnknownPreset};

@@ -11,8 +11,8 @@
 //! which four exponentials a = e^(-q l), b = e^(-q (d - l)), c = e^(-2 q z0), e = e^(-2 q zd) bring to products:
 //! R = alpha'/2 a (1 + c)(1 - b² e) / (1 - a² b² c e), T = alpha'/2 b (1 + e)(1 - a² c) / (1 - a² b² c e).
 //! Upside down, c and e change places.
-//! Valid for l < d: a source below the slab would make the transmittance negative. Reduced albedo above 0.95, as the
-//! dipole.
+//! Valid for l < d: a source below the slab would make the transmittance negative ([`TooThin`]). Reduced albedo above 0.95,
+//! as the dipole.
 
 use crate::medium::reflection_parameter;
 use crate::{Boundary, Medium, MediumError, Pole, Profile};
@@ -51,6 +51,7 @@ pub struct Multipole {
     beyond_top_mm: f64,
     /// zd, mm.
     beyond_bottom_mm: f64,
+    too_thin: Option<TooThin>,
 }
 
 /// Why a slab is refused.
@@ -65,23 +66,28 @@ pub enum MultipoleError {
         /// What was given, mm.
         value: f64,
     },
-    /// The source would lie below the slab.
-    #[error(
-        "a slab of {thickness_mm} mm is thinner than its transport mean free path of {mean_free_path_mm} mm; simulate it instead"
-    )]
-    TooThin {
-        /// Thickness, mm.
-        thickness_mm: f64,
-        /// l, mm.
-        mean_free_path_mm: f64,
-    },
+}
+
+/// A slab too thin for diffusion: light crosses it before it is diffuse.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error(
+    "a slab of {thickness_mm} mm is thinner than its transport mean free path of {mean_free_path_mm:.4} mm: its reflectance is too high and its transmittance too low; take monte-carlo instead"
+)]
+pub struct TooThin {
+    /// Thickness, mm.
+    pub thickness_mm: f64,
+    /// l, mm.
+    pub mean_free_path_mm: f64,
 }
 
 impl Multipole {
     /// A slab of `medium` between two boundaries.
     ///
+    /// Where the slab is thinner than its mean free path the source is put in its middle, so that there is a number and no
+    /// energy is lost; [`Multipole::too_thin`] tells.
+    ///
     /// # Errors
-    /// If the medium or a ratio cannot be real, the thickness is not finite and positive, or the source does not lie inside.
+    /// If the medium or a ratio cannot be real, or the thickness is not finite and positive.
     pub fn new(
         medium: &Medium,
         thickness_mm: f64,
@@ -93,20 +99,26 @@ impl Multipole {
             return Err(MultipoleError::Thickness { value: thickness_mm });
         }
         let mean_free_path_mm = medium.transport_mean_free_path_mm();
-        if mean_free_path_mm >= thickness_mm {
-            return Err(MultipoleError::TooThin { thickness_mm, mean_free_path_mm });
-        }
+        // A source below the slab would make the transmittance negative.
+        let is_thin = mean_free_path_mm >= thickness_mm;
+        let source_depth_mm = if is_thin { 0.5 * thickness_mm } else { mean_free_path_mm };
         let beyond_mm = |boundary: Boundary| -> Result<f64, MediumError> {
             Ok(2.0 * reflection_parameter(&medium, boundary)? * medium.diffusion_coefficient_mm())
         };
         Ok(Self {
             albedo_reduced: medium.albedo_reduced(),
             sigma_tr_per_mm: medium.sigma_tr_per_mm(),
-            source_depth_mm: mean_free_path_mm,
+            source_depth_mm,
+            too_thin: is_thin.then_some(TooThin { thickness_mm, mean_free_path_mm }),
             thickness_mm,
             beyond_top_mm: beyond_mm(above)?,
             beyond_bottom_mm: beyond_mm(below)?,
         })
+    }
+
+    /// Whether, and by how much, the slab is too thin for diffusion.
+    pub fn too_thin(&self) -> Option<TooThin> {
+        self.too_thin
     }
 
     /// What the slab does to light of spatial frequency k (radians per mm).
@@ -345,9 +357,28 @@ mod tests {
             Multipole::new(&medium, 1.0, Boundary::smooth(9.0), Boundary::smooth(1.4)),
             Err(MultipoleError::Medium(_))
         ));
-        assert!(matches!(
-            Multipole::new(&medium, 0.4, Boundary::smooth(1.4), Boundary::smooth(1.4)),
-            Err(MultipoleError::TooThin { .. })
-        ));
+    }
+
+    #[test]
+    fn slabs_thinner_than_a_mean_free_path_give_a_number_and_say_so() {
+        // l = 1/2.1 mm.
+        let smooth = Boundary::smooth(1.4);
+        let of = |sigma_a, thickness_mm| {
+            Multipole::new(&Medium::new(sigma_a, 2.1 - sigma_a, 1.4).unwrap(), thickness_mm, smooth, smooth)
+                .unwrap()
+        };
+        assert_eq!(of(0.1, 0.5).too_thin(), None);
+        let told = of(0.1, 0.4).too_thin().unwrap().to_string();
+        assert!(told.contains("0.4 mm is thinner than its transport mean free path of 0.4762 mm"), "{told}");
+        for thickness_mm in [0.4, 0.04, 1e-6] {
+            let whole = of(0.0, thickness_mm).response(0.0);
+            assert!((whole.reflectance_down + whole.transmittance_down - 1.0).abs() < 1e-14);
+            for k in [0.0, 1.0, 100.0] {
+                let r = of(0.1, thickness_mm).response(k);
+                assert!(
+                    (0.0..=1.0).contains(&r.reflectance_down) && (0.0..=1.0).contains(&r.transmittance_down)
+                );
+            }
+        }
     }
 }

@@ -8,7 +8,7 @@
 //! thickness, because each part is lit anew by a source one mean free path under its face.
 
 use crate::hankel::inverse_hankel;
-use crate::multipole::{MultipoleError, Response};
+use crate::multipole::{MultipoleError, Response, TooThin};
 use crate::powers::{Powers, PowersSettings};
 use crate::{Boundary, Dipole, Medium, Multipole, Profile};
 
@@ -103,6 +103,12 @@ impl Stack {
         };
         let bottom = if endless { Some(half_space()?) } else { None };
         Ok(Self { slabs, bottom, finest_mm: layers[0].medium.transport_mean_free_path_mm() })
+    }
+
+    /// Layers too thin for diffusion, by their number; the top one is 1.
+    pub fn too_thin(&self) -> Vec<(usize, TooThin)> {
+        let thin = |(i, slab): (usize, &Multipole)| slab.too_thin().map(|thin| (i + 1, thin));
+        self.slabs.iter().enumerate().filter_map(thin).collect()
     }
 
     /// The slabs of finite thickness, from top to bottom.

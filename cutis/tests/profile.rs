@@ -119,7 +119,7 @@ fn an_explanation_tells_lengths_apart_and_says_where_diffusion_fails() {
     assert!((number(&layer["transport_mean_free_path_mm"]) - 0.671_141).abs() < 1e-6);
     assert!((number(&layer["diffuse_mean_free_path_mm"]) - 0.682_696).abs() < 1e-5);
     assert_eq!(layer["diffusion_holds"], false);
-    assert!(layer["verdict"].as_str().expect("words").contains("simulate"));
+    assert!(layer["verdict"].as_str().expect("words").contains("monte-carlo"));
     assert_eq!(number(&explained["total_transmittance"]), 0.0);
     let errors: Vec<f64> = explained["fits"]
         .as_array()
@@ -262,6 +262,19 @@ fn every_source_and_every_method_gives_a_profile_of_its_own() {
 }
 
 #[test]
+fn a_slab_too_thin_for_diffusion_gives_a_number_and_a_warning() {
+    let thin = ["--layer", "mu_a=0.1,mu_s=2,n=1.4,d=0.2", "--layer", "mu_a=0.01,mu_s=2,n=1.4"];
+    let report = json(&thin);
+    assert!((0.0..1.0).contains(&number(&report["total_diffuse_reflectance"])));
+    let warnings = report["warnings"].as_array().expect("a list");
+    let told = |w: &Value| w.as_str().is_some_and(|w| w.contains("layer 1") && w.contains("monte-carlo"));
+    assert!(warnings.iter().any(told), "{warnings:?}");
+    // The simulation has nothing to be warned of.
+    let simulated = json(&[&thin[..], &["--source", "monte-carlo", "--photons", "4096"]].concat());
+    assert_eq!(simulated["warnings"].as_array().map(Vec::len), Some(0));
+}
+
+#[test]
 fn seven_taps_bound_the_variances() {
     let report = json(&["cream", "--gaussians", "4", "--seven-tap"]);
     let variances: Vec<f64> =
@@ -303,7 +316,6 @@ fn nonsense_ends_with_code_2_and_one_clear_line() {
         (&["--layer", "mu_a=1,mu_s=0"], "layer 1: sigma_s_reduced_per_mm must be at least"),
         (&["--layer", "mu_a=1,mu_s=2,g=1.5"], "layer 1: sigma_s_reduced_per_mm must not be negative"),
         (&["--layer", "mu_a=NaN,mu_s=2"], "layer 1: sigma_a_per_mm must be finite"),
-        (&["--layer", "mu_a=0.1,mu_s=2,n=1.4,d=0.2"], "thinner than its transport mean free path"),
         (&["--layer", "mu_a=0.1,mu_s=2,d=5", "--source", "dipole"], "use multipole or monte-carlo"),
     ];
     for (words, told) in cases {

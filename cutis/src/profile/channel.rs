@@ -5,7 +5,7 @@ use super::material::Substance;
 use super::source::{self, Sourced};
 use crate::cli::METHODS;
 use cutis_optics::{
-    BoxedProfile, DiffusionValidity, Dipole, Fit, FitMethod, GaussianSum, ProfileSource, TissueLayer,
+    BoxedProfile, DiffusionValidity, Dipole, Fit, FitMethod, GaussianSum, ProfileSource, Stack, TissueLayer,
     WorstError, fit, fit_with, worst_absolute_error,
 };
 use miette::{Result, miette};
@@ -156,6 +156,8 @@ impl Channel {
         }
         let channel = self.name.map_or_else(String::new, |name| format!("channel {name}, "));
         let numbered = self.validity().into_iter().enumerate().filter(|(_, validity)| !validity.is_good());
-        numbered.map(|(i, validity)| format!("{channel}layer {}: {validity}", i + 1)).collect()
+        let weak = numbered.map(|(i, validity)| format!("{channel}layer {}: {validity}", i + 1));
+        let thin = Stack::in_air(&self.layers).map(|stack| stack.too_thin()).unwrap_or_default();
+        weak.chain(thin.into_iter().map(|(layer, thin)| format!("{channel}layer {layer}: {thin}"))).collect()
     }
 }

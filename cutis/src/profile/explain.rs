@@ -2,7 +2,7 @@
 
 use super::Profiled;
 use super::channel::Channel;
-use cutis_optics::{DiffusionValidity, FitMethod, Medium, Stack, fit};
+use cutis_optics::{DiffusionValidity, FitMethod, Medium, Stack, TooThin, fit};
 use miette::{Result, miette};
 use serde::Serialize;
 
@@ -47,23 +47,25 @@ pub fn all(profiled: &Profiled, method: FitMethod) -> Result<Vec<Explanation>> {
 fn explanation(channel: &Channel, method: FitMethod) -> Result<Explanation> {
     // Transmittance is a matter of the whole stack, whichever model gave the reflectance.
     let stack = Stack::in_air(&channel.layers).ok();
-    let media = channel.layers.iter().map(|layer| &layer.medium);
+    let thin = stack.as_ref().map(Stack::too_thin).unwrap_or_default();
+    let thin = |number: usize| thin.iter().find(|(layer, _)| *layer == number).map(|(_, thin)| *thin);
+    let media = channel.layers.iter().map(|layer| &layer.medium).enumerate();
     Ok(Explanation {
         total_diffuse_reflectance: channel.profile.total(),
         total_transmittance: stack.map(|stack| stack.transmittance_spectrum(0.0)),
-        layers: media.zip(channel.validity()).map(|(medium, verdict)| layer(medium, verdict)).collect(),
+        layers: media.zip(channel.validity()).map(|((i, medium), v)| layer(medium, v, thin(i + 1))).collect(),
         fits: TRIED.map(|gaussians| trial(channel, gaussians, method)).collect::<Result<_>>()?,
     })
 }
 
-fn layer(medium: &Medium, validity: DiffusionValidity) -> LayerExplanation {
+fn layer(medium: &Medium, validity: DiffusionValidity, thin: Option<TooThin>) -> LayerExplanation {
     let diffuse_mm = medium.diffuse_mean_free_path_mm();
     LayerExplanation {
         albedo_reduced: medium.albedo_reduced(),
         transport_mean_free_path_mm: medium.transport_mean_free_path_mm(),
         diffuse_mean_free_path_mm: diffuse_mm.is_finite().then_some(diffuse_mm),
-        diffusion_holds: validity.is_good(),
-        verdict: validity.to_string(),
+        diffusion_holds: validity.is_good() && thin.is_none(),
+        verdict: thin.map_or_else(|| validity.to_string(), |thin| thin.to_string()),
     }
 }
 

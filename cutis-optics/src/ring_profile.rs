@@ -61,10 +61,9 @@ impl RingProfile {
         self.beyond
     }
 
-    /// Radius that halves a ring's area, where a smooth profile is about the ring's mean.
+    /// Radius in the middle of a ring, where 1/r is the ring's mean exactly, and a constant anyway.
     fn middle_mm(&self, ring: usize) -> f64 {
-        let [a, b] = [self.edges_mm[ring], self.edges_mm[ring + 1]];
-        (0.5 * (a * a + b * b)).sqrt()
+        0.5 * (self.edges_mm[ring] + self.edges_mm[ring + 1])
     }
 }
 
@@ -86,24 +85,30 @@ impl Profile for RingProfile {
         TAU / k_per_mm * sum
     }
 
-    /// Between the middles of two rings the logarithm is linear in the radius (where a ring is empty: the value itself), so
-    /// that nothing is ever negative. A convex profile's mean over a ring is met to second order in the ring's width, not
-    /// exactly. The innermost ring is even up to its middle; beyond the outermost there is nothing.
+    /// A power of the radius between the middles of two rings (where one is empty, a straight line), and on towards the beam:
+    /// never negative, and for light that goes as 1/r, as that scattered once does, with the mean of every ring. Beyond the
+    /// outermost ring there is nothing; at the beam itself the profile may be infinite.
     fn at_mm(&self, r_mm: f64) -> f64 {
         let heights = &self.reflectance_per_mm2;
         if r_mm >= self.edges_mm[heights.len()] {
             return 0.0;
         }
-        // The ring that holds the radius, or the next one: the first whose middle lies beyond.
+        // The ring that holds the radius, and its middle too if that lies before it.
         let holding = self.edges_mm[1..].partition_point(|&edge_mm| edge_mm <= r_mm);
-        let after = if self.middle_mm(holding) <= r_mm { holding + 1 } else { holding };
-        if after == 0 || after == heights.len() {
-            return heights[after.saturating_sub(1)];
+        let middles_passed = holding + usize::from(self.middle_mm(holding) <= r_mm);
+        if middles_passed == heights.len() || heights.len() == 1 {
+            return heights[heights.len() - 1];
         }
+        let after = middles_passed.max(1);
         let [from, to] = [after - 1, after].map(|ring| self.middle_mm(ring));
-        let share = (r_mm - from) / (to - from);
         let [a, b] = [heights[after - 1], heights[after]];
-        if a > 0.0 && b > 0.0 { a * (b / a).powf(share) } else { a + share * (b - a) }
+        if a > 0.0 && b > 0.0 {
+            // Towards the beam no steeper than 1/r, and never falling: two rings may differ by chance.
+            let power = (b / a).ln() / (to / from).ln();
+            let power = if middles_passed == 0 { power.clamp(-1.0, 0.0) } else { power };
+            return a * (r_mm / from).powf(power);
+        }
+        (a + (b - a) * (r_mm - from) / (to - from)).max(0.0)
     }
 }
 
@@ -145,7 +150,7 @@ mod tests {
 
     #[test]
     fn values_between_rings_are_positive_and_near_their_means() {
-        // A Gaussian whose exponent grows by s = 0.2 r over a ring: the mean is sinh(s/2)/(s/2) of the middle, 1.5 % at 3.
+        // A Gaussian whose exponent grows by s = 0.2 r over a ring: the mean is about 1 + s²/24 of the middle, 1.5 % at 3.
         let exact = |r: f64| (-r * r).exp();
         let edges_mm: Vec<f64> = (0..=30).map(|i| 0.1 * f64::from(i)).collect();
         let mut shares: Vec<Estimate> =
@@ -153,10 +158,25 @@ mod tests {
         shares.push(share(0.0));
         let profile = RingProfile::from_shares(edges_mm, &shares);
         for r in [0.1, 0.33, 1.0, 2.2, 2.9] {
-            assert!((profile.at_mm(r) / exact(r) - 1.0).abs() < 0.015, "{r}: {}", profile.at_mm(r));
+            // The power law between two middles bends the other way: half as much again.
+            assert!((profile.at_mm(r) / exact(r) - 1.0).abs() < 0.025, "{r}: {}", profile.at_mm(r));
         }
         assert_eq!(profile.at_mm(3.0), 0.0);
-        assert_eq!(profile.at_mm(0.0), profile.reflectance_per_mm2()[0]);
+    }
+
+    #[test]
+    fn light_that_goes_as_one_over_r_is_met_exactly() {
+        let edges_mm: Vec<f64> = (0..=10).map(|i| 0.1 * f64::from(i)).collect();
+        let mut shares: Vec<Estimate> = edges_mm.windows(2).map(|e| share(TAU * (e[1] - e[0]))).collect();
+        shares.push(share(0.0));
+        let profile = RingProfile::from_shares(edges_mm, &shares);
+        for r in [1e-6, 0.01, 0.05, 0.12, 0.5, 0.94] {
+            assert!((profile.at_mm(r) * r - 1.0).abs() < 1e-12, "{r}: {}", profile.at_mm(r));
+        }
+        // An empty ring, and the beam itself.
+        let holes = RingProfile::from_shares(vec![0.0, 0.1, 0.2, 0.3], &[0.1, 0.0, 0.2, 0.0].map(share));
+        assert!([0.0, 0.01, 0.08, 0.12, 0.2, 0.29].iter().all(|&r| holes.at_mm(r) >= 0.0));
+        assert!(holes.at_mm(0.15) < 1e-12);
     }
 
     #[test]

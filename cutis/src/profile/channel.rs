@@ -149,9 +149,9 @@ impl Channel {
         self.layers.iter().filter_map(of).collect()
     }
 
-    /// Warnings, one for each layer where diffusion does not hold; a simulation needs none.
+    /// Warnings, one for each layer where classical diffusion is asked for and does not hold.
     pub fn warnings(&self) -> Vec<String> {
-        if self.source == Some(ProfileSource::MonteCarlo) {
+        if !matches!(self.source, Some(ProfileSource::Dipole | ProfileSource::Multipole)) {
             return Vec::new();
         }
         let channel = self.name.map_or_else(String::new, |name| format!("channel {name}, "));

@@ -2,6 +2,7 @@
 
 use crate::profile::channel::Channel;
 use cutis_optics::{GaussianSum, Profile};
+use rayon::prelude::*;
 
 /// Points of a curve.
 const POINTS: usize = 480;
@@ -64,7 +65,7 @@ impl Sampled {
         let linear = linear(ranges.r_max_mm);
         let logarithmic = logarithmic(ranges.r_log_mm);
         let waves = self::logarithmic(ranges.k_log_per_mm);
-        let at = |radii: &[f64]| -> Vec<f64> { radii.iter().map(|&r| profile.at_mm(r)).collect() };
+        let at = |radii: &[f64]| -> Vec<f64> { radii.par_iter().map(|&r| profile.at_mm(r)).collect() };
         let exact = at(&linear);
         let curve = |x: &[f64], f: &dyn Fn(f64) -> f64| -> Points { x.iter().map(|&x| (x, f(x))).collect() };
         let pairs = || linear.iter().zip(&exact);

@@ -16,6 +16,7 @@
 
 use crate::medium::reflection_parameter;
 use crate::{Boundary, Medium, MediumError, Pole, Profile};
+use wide::f64x4;
 
 /// Pairs of poles on either side of the slab that are summed in the radius: what is left out is below e^(-200 sigma_tr L),
 /// and without absorption below 1e-6 of the first.
@@ -130,7 +131,7 @@ impl Multipole {
         let q = (k_per_mm * k_per_mm + self.sigma_tr_per_mm * self.sigma_tr_per_mm).sqrt();
         let (l, d) = (self.source_depth_mm, self.thickness_mm);
         let (z0, zd, whole) = (self.beyond_top_mm, self.beyond_bottom_mm, self.whole_mm());
-        let [a, b, c, e] = [l, d - l, 2.0 * z0, 2.0 * zd].map(|length_mm| (-q * length_mm).exp());
+        let [a, b, c, e] = (f64x4::new([l, d - l, 2.0 * z0, 2.0 * zd]) * f64x4::splat(-q)).exp().to_array();
         // 1 - e^(-q length), which cancels for slow waves; only quotients of two are used, so that the slowest of all may
         // be divided by q.
         let rest = |product: f64, length_mm: f64| match q * whole {

@@ -7,6 +7,7 @@
 
 use super::FitError;
 use crate::{GaussianSum, Profile};
+use wide::f64x4;
 
 /// Step in t. Of ∫ k e^(-k²) dk the rule misses 2 |Gamma(1 + i pi/h)| = 1e-16, so that errors of 1e-6 are still errors.
 const STEP: f64 = 0.12;
@@ -72,6 +73,21 @@ impl FrequencyGrid {
     /// Lowest and highest frequency at which a profile has fallen to half: the scale for starting values.
     pub(super) fn k_half_range_per_mm(&self) -> (f64, f64) {
         self.k_half_range_per_mm
+    }
+
+    /// A Gaussian of weight 1 at the nodes, times the square root of the quadrature weight.
+    pub(super) fn fill_gaussian(&self, variance_mm2: f64, values: &mut [f64]) {
+        let half = f64x4::splat(-0.5 * variance_mm2);
+        let lanes = |of: &[f64]| {
+            let mut four = [0.0; 4];
+            four[..of.len()].copy_from_slice(of);
+            f64x4::new(four)
+        };
+        let nodes = self.k_per_mm.chunks(4).zip(self.root_weights.chunks(4));
+        for (place, (k, weight)) in values.chunks_mut(4).zip(nodes) {
+            let (k, weight) = (lanes(k), lanes(weight));
+            place.copy_from_slice(&(weight * (half * k * k).exp()).to_array()[..place.len()]);
+        }
     }
 
     /// Square roots of the quadrature weights, so that sums of squares are the integral; one for each frequency.

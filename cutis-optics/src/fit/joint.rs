@@ -97,8 +97,8 @@ impl JointFit {
             relative_rms_power_error: Vec::new(),
             total_diffuse_reflectance: profiles.iter().map(|p| p.total()).collect(),
         };
-        let error = |(i, p): (usize, &&dyn Profile)| problem.grid().relative_error(*p, &fit.sum(i));
-        fit.relative_rms_power_error = profiles.iter().enumerate().map(error).collect();
+        fit.relative_rms_power_error =
+            (0..profiles.len()).map(|i| problem.relative_error(i, &fit.sum(i))).collect();
         fit
     }
 

@@ -228,7 +228,7 @@ fn into_fit(problem: &Problem, solution: Solution, profile: &dyn Profile, method
     let sum = GaussianSum::new(terms.filter(|g| chained || g.weight != 0.0).collect());
     Fit {
         method,
-        relative_rms_power_error: problem.grid().relative_error(profile, &sum),
+        relative_rms_power_error: problem.relative_error(0, &sum),
         energy: sum.energy(),
         total_diffuse_reflectance: profile.total(),
         sum,

@@ -8,7 +8,7 @@ use super::FitMethod;
 use super::frequency_grid::FrequencyGrid;
 use super::seven_tap::SevenTap;
 use super::weights::{LeastSquares, SignRule, dot, solve};
-use crate::Profile;
+use crate::{GaussianSum, Profile};
 use nalgebra::{DMatrix, DVector};
 
 /// Weight of the energy row against a profile of norm 1. The row is missed by 1/ENERGY² = 1e-6 of what the free fit would
@@ -104,10 +104,6 @@ impl Problem {
         self.limits.map_or(seen.clone(), |limits| limits.allowed(&seen))
     }
 
-    pub(super) fn grid(&self) -> &FrequencyGrid {
-        &self.grid
-    }
-
     fn sign_rule(&self) -> SignRule {
         if self.method == FitMethod::Energy { SignRule::NotNegative } else { SignRule::Free }
     }
@@ -157,6 +153,18 @@ impl Problem {
         columns.zip(solution.variances_mm2()).map(bend).collect()
     }
 
+    /// Relative RMS power error (eq. 10) of a sum against one channel's profile.
+    pub(super) fn relative_error(&self, channel: usize, sum: &GaussianSum) -> f64 {
+        let target = &self.targets[channel];
+        let mut left = target.b.rows(1, self.grid.len()) * target.norm;
+        let mut gaussian = vec![0.0; self.grid.len()];
+        for term in &sum.terms {
+            self.grid.fill_gaussian(term.variance_mm2, &mut gaussian);
+            left.iter_mut().zip(&gaussian).for_each(|(left, g)| *left -= term.weight * g);
+        }
+        left.norm() / target.norm
+    }
+
     /// Weights of one channel for the profile itself, in the order of the variances; under [`FitMethod::Energy`] their sum
     /// is R_d to rounding.
     pub(super) fn weights(&self, solution: &Solution, channel: usize) -> Vec<f64> {
@@ -173,11 +181,11 @@ impl Problem {
 
     /// One column per variance; the energy row, still empty, on top.
     fn design(&self, ln_variances: &[f64]) -> DMatrix<f64> {
-        let column = |ln_v: &f64| {
-            let v = ln_v.exp();
-            with_first_row(0.0, &self.grid, |k| (-0.5 * v * k * k).exp())
-        };
-        DMatrix::from_columns(&ln_variances.iter().map(column).collect::<Vec<_>>())
+        let mut design = DMatrix::zeros(self.rows(), ln_variances.len());
+        for (column, ln_v) in design.as_mut_slice().chunks_exact_mut(self.rows()).zip(ln_variances) {
+            self.grid.fill_gaussian(ln_v.exp(), &mut column[1..]);
+        }
+        design
     }
 
     /// d/d(ln v) of each column: -v k²/2 times the column; the energy row does not change.
@@ -194,9 +202,13 @@ impl Problem {
 
 impl Target {
     fn new(profile: &dyn Profile, grid: &FrequencyGrid, method: FitMethod) -> Self {
-        let (norm, total) = (grid.norm(|k| profile.spectrum(k)), profile.total());
+        let nodes = grid.k_per_mm().iter().zip(grid.root_weights());
+        let weighed = nodes.map(|(&k, weight)| weight * profile.spectrum(k));
+        let mut b = DVector::from_iterator(grid.len() + 1, core::iter::once(0.0).chain(weighed));
+        let (norm, total) = (b.norm(), profile.total());
         let energy_row = if method == FitMethod::Energy { ENERGY * norm / total } else { 0.0 };
-        let b = with_first_row(energy_row * total / norm, grid, |k| profile.spectrum(k) / norm);
+        b /= norm;
+        b[0] = energy_row * total / norm;
         Self { b, energy_row, norm, total }
     }
 }
@@ -213,7 +225,8 @@ impl Target {
 impl Channel {
     /// Adds this channel's part to the derivatives; columns without weight have none.
     fn add_derivatives(&self, slopes: &DMatrix<f64>, bends: &[f64], sum: &mut Derivatives) {
-        let LeastSquares { weights, active, q, r } = &self.squares;
+        let LeastSquares { weights, active, r, .. } = &self.squares;
+        let q = self.squares.basis();
         let rows = self.residual.len();
         let q_column = |i: usize| &q.as_slice()[i * rows..(i + 1) * rows];
         let moved: Vec<Moved> = active
@@ -253,12 +266,6 @@ struct Moved {
     outside: Vec<f64>,
     inside: DVector<f64>,
     back: DVector<f64>,
-}
-
-/// A column over the nodes, each entry weighed for quadrature, with the energy row on top.
-fn with_first_row(first: f64, grid: &FrequencyGrid, f: impl Fn(f64) -> f64) -> DVector<f64> {
-    let nodes = grid.k_per_mm().iter().zip(grid.root_weights()).map(|(&k, weight)| weight * f(k));
-    DVector::from_iterator(grid.len() + 1, core::iter::once(first).chain(nodes))
 }
 
 #[cfg(test)]

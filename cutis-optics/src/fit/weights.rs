@@ -17,8 +17,8 @@ pub(super) struct LeastSquares {
     pub(super) weights: Vec<f64>,
     /// Indices of the columns in use.
     pub(super) active: Vec<usize>,
-    /// Orthonormal basis of those columns (rows × active).
-    pub(super) q: DMatrix<f64>,
+    /// Householder's reflectors of those columns (rows × active).
+    reflectors: DMatrix<f64>,
     /// Triangle with A_active = Q R.
     pub(super) r: DMatrix<f64>,
 }
@@ -32,7 +32,7 @@ pub(super) fn solve(a: &DMatrix<f64>, b: &DVector<f64>, rule: SignRule) -> Optio
     }
     // All the algorithm asks of A and b is in the small triangle; where columns coincide there is none, and A itself serves.
     let mut active = match free {
-        Some(free) => not_negative_set(&free.r, &free.q.tr_mul(b))?,
+        Some(free) => not_negative_set(&free.r, &free.basis().tr_mul(b))?,
         None => not_negative_set(a, b)?,
     };
     loop {
@@ -46,31 +46,49 @@ pub(super) fn solve(a: &DMatrix<f64>, b: &DVector<f64>, rule: SignRule) -> Optio
 }
 
 fn solve_on(a: &DMatrix<f64>, b: &DVector<f64>, active: &[usize]) -> Option<LeastSquares> {
-    let (q, r) = thin_qr(a, active);
-    let w = r.solve_upper_triangular(&q.tr_mul(b))?;
+    let (reflectors, r) = triangle(a, active);
+    let mut turned = b.clone();
+    for (j, v) in reflectors.as_slice().chunks_exact(a.nrows()).enumerate() {
+        reflect(&v[j..], &mut turned.as_mut_slice()[j..]);
+    }
+    let w = r.solve_upper_triangular(&turned.rows(0, r.nrows()))?;
     let mut weights = vec![0.0; a.ncols()];
     for (&column, &weight) in active.iter().zip(w.iter()) {
         weights[column] = weight;
     }
     let finite = weights.iter().all(|w| w.is_finite());
-    finite.then_some(LeastSquares { weights, active: active.to_vec(), q, r })
+    finite.then_some(LeastSquares { weights, active: active.to_vec(), reflectors, r })
 }
 
-/// Householder's QR of some columns, thin. The first row may be heavier than all others: it comes first, so it costs no
-/// accuracy. The same as nalgebra's, on whole columns at a time, which is three times as fast for matrices as narrow as these.
-fn thin_qr(a: &DMatrix<f64>, active: &[usize]) -> (DMatrix<f64>, DMatrix<f64>) {
+impl LeastSquares {
+    /// Orthonormal basis of the columns in use (rows × active): the reflections, undone on the first unit vectors.
+    pub(super) fn basis(&self) -> DMatrix<f64> {
+        let (rows, n) = (self.reflectors.nrows(), self.reflectors.ncols());
+        let mut q = DMatrix::identity(rows, n);
+        for (j, v) in self.reflectors.as_slice().chunks_exact(rows).enumerate().rev() {
+            for column in q.as_mut_slice().chunks_exact_mut(rows).skip(j) {
+                reflect(&v[j..], &mut column[j..]);
+            }
+        }
+        q
+    }
+}
+
+/// Householder's reflectors (each of length sqrt 2, so that they need no factor) of some columns, and their triangle. The
+/// first row may be heavier than all others: it comes first, so it costs no accuracy. As nalgebra's, but on whole columns at
+/// a time, which for matrices as narrow as these is several times as fast.
+fn triangle(a: &DMatrix<f64>, active: &[usize]) -> (DMatrix<f64>, DMatrix<f64>) {
     let (rows, n) = (a.nrows(), active.len().min(a.nrows()));
     let mut reflectors = a.select_columns(&active[..n]);
     let mut r = DMatrix::zeros(n, n);
     for j in 0..n {
         let (done, rest) = reflectors.as_mut_slice().split_at_mut((j + 1) * rows);
         let v = &mut done[j * rows + j..];
-        let norm = dot(v, v).sqrt();
-        let diagonal = -norm.copysign(v[0]);
+        let diagonal = -dot(v, v).sqrt().copysign(v[0]);
         r[(j, j)] = diagonal;
         v[0] -= diagonal;
-        // A reflector of length sqrt 2 needs no factor; a column of zeros needs no reflection.
         let length2 = dot(v, v);
+        // A column of zeros needs no reflection.
         let scale = if length2 > 0.0 { (2.0 / length2).sqrt() } else { 0.0 };
         v.iter_mut().for_each(|x| *x *= scale);
         for (i, column) in rest.chunks_exact_mut(rows).enumerate() {
@@ -78,14 +96,7 @@ fn thin_qr(a: &DMatrix<f64>, active: &[usize]) -> (DMatrix<f64>, DMatrix<f64>) {
             r[(j, j + 1 + i)] = column[j];
         }
     }
-    let mut q = DMatrix::identity(rows, n);
-    for j in (0..n).rev() {
-        let v = &reflectors.as_slice()[j * rows + j..(j + 1) * rows];
-        for column in q.as_mut_slice().chunks_exact_mut(rows).skip(j) {
-            reflect(v, &mut column[j..]);
-        }
-    }
-    (q, r)
+    (reflectors, r)
 }
 
 /// x - v (v·x).
@@ -94,17 +105,18 @@ fn reflect(v: &[f64], x: &mut [f64]) {
     x.iter_mut().zip(v).for_each(|(x, v)| *x -= along * v);
 }
 
-/// Four sums at a time: additions of one sum would wait for each other.
+/// Sixteen sums at a time: additions of one sum would wait for each other.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(x, y)| x * y).sum();
-    let mut sums = [0.0; 4];
-    for (x, y) in a4.zip(b4) {
-        for lane in 0..4 {
+    const SUMS: usize = 16;
+    let (many_a, many_b) = (a.chunks_exact(SUMS), b.chunks_exact(SUMS));
+    let rest: f64 = many_a.remainder().iter().zip(many_b.remainder()).map(|(x, y)| x * y).sum();
+    let mut sums = [0.0; SUMS];
+    for (x, y) in many_a.zip(many_b) {
+        for lane in 0..SUMS {
             sums[lane] += x[lane] * y[lane];
         }
     }
-    rest + (sums[0] + sums[1]) + (sums[2] + sums[3])
+    rest + sums.iter().sum::<f64>()
 }
 
 /// The columns with positive weight at the constrained optimum.

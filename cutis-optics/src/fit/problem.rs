@@ -70,10 +70,10 @@ impl Problem {
         Ok(Self { grid, method, targets, limits: None })
     }
 
-    /// The same on fewer nodes, with free weights.
-    pub(super) fn thinned(&self) -> Self {
-        let targets = self.targets.iter().map(Target::thinned).collect();
-        Self { grid: self.grid.thinned(), method: FitMethod::Optimal, targets, limits: self.limits }
+    /// The same on every n-th node, by another method perhaps.
+    pub(super) fn every(&self, n: usize, method: FitMethod) -> Self {
+        let targets = self.targets.iter().map(|target| target.every(n, method)).collect();
+        Self { grid: self.grid.every(n), method, targets, limits: self.limits }
     }
 
     /// Smallest and largest ln v (mm²) worth starting from: 0.0025 to 1100 times 1/k_half² where all channels are alike,
@@ -214,11 +214,12 @@ impl Target {
 }
 
 impl Target {
-    /// On every third node, weighed as they are there.
-    fn thinned(&self) -> Self {
-        let nodes = self.b.iter().skip(1).step_by(3).map(|b| b * 3f64.sqrt());
-        let rows: Vec<f64> = core::iter::once(0.0).chain(nodes).collect();
-        Self { b: DVector::from_vec(rows), energy_row: 0.0, ..*self }
+    /// On every n-th node, weighed as they are there.
+    fn every(&self, n: usize, method: FitMethod) -> Self {
+        let share = if method == FitMethod::Energy { 1.0 } else { 0.0 };
+        let nodes = self.b.iter().skip(1).step_by(n).map(|b| b * (n as f64).sqrt());
+        let rows: Vec<f64> = core::iter::once(share * self.b[0]).chain(nodes).collect();
+        Self { b: DVector::from_vec(rows), energy_row: share * self.energy_row, ..*self }
     }
 }
 

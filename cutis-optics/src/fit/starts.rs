@@ -3,9 +3,9 @@
 //! The best variances of these profiles lie nearly on a geometric sequence. All sequences of a coarse grid of first and last
 //! variances are judged by their error with best weights (cheap), and the best few are run downhill.
 
-use super::FitError;
 use super::levenberg_marquardt::descend;
 use super::problem::{Problem, Solution};
+use super::{FitError, FitMethod};
 use core::cmp::Ordering;
 
 /// Sequences run to the end. Over the measured profiles with 4, 6 and 8 terms the first one leads to the global minimum; …
@@ -23,21 +23,28 @@ const PLACES: usize = 3;
 /// … and where none of these has a solution, which has been seen where scales differ by seventeen decades.
 const MANY_PLACES: usize = 8;
 
+/// Starts are judged on every fourth node, …
+const ROUGH: usize = 4;
+/// … run downhill on every second while that is easy, and to the end on all.
+const COARSE: usize = 2;
+
 /// The best of several runs.
 pub(super) fn best_solution(problem: &Problem, gaussians: usize) -> Result<Solution, FitError> {
-    let runs = if gaussians > EASY { RUNS_PAST_EASY } else { RUNS };
-    let thinned = problem.thinned();
+    let (runs, nodes) = if gaussians > EASY { (RUNS_PAST_EASY, 1) } else { (RUNS, COARSE) };
+    let (rough, coarse) = (problem.every(ROUGH, FitMethod::Optimal), problem.every(nodes, problem.method()));
     let judged = |places| {
         let sequences = sequences(problem, gaussians, places);
         let mut starts: Vec<Solution> =
-            sequences.iter().filter_map(|s| thinned.solve(&problem.allowed(s))).collect();
+            sequences.iter().filter_map(|s| rough.solve(&problem.allowed(s))).collect();
         starts.sort_by(by_cost);
         starts
     };
     for places in [PLACES, MANY_PLACES] {
         let starts = judged(places);
-        let starts = starts.iter().filter_map(|start| problem.solve(&start.ln_variances)).take(runs);
-        if let Some(best) = starts.map(|start| descend(problem, start)).min_by(by_cost) {
+        let starts = starts.iter().filter_map(|start| coarse.solve(&start.ln_variances)).take(runs);
+        let near = starts.map(|start| descend(&coarse, start));
+        let near = near.filter_map(|near| problem.solve(&near.ln_variances));
+        if let Some(best) = near.map(|near| descend(problem, near)).min_by(by_cost) {
             return Ok(best);
         }
     }
@@ -64,8 +71,8 @@ fn sequences(problem: &Problem, gaussians: usize, places: usize) -> Vec<Vec<f64>
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use super::*;
+    use crate::Dipole;
     use crate::presets::measured_media::MEASURED_MEDIA;
-    use crate::{Dipole, FitMethod};
 
     /// The obvious global search: many runs from scattered starts, without the screening.
     fn best_of_scattered_starts(problem: &Problem, gaussians: usize, runs: u64) -> f64 {

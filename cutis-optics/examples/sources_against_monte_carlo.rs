@@ -3,7 +3,7 @@
 //!
 //! Isotropic scattering, normal beam, sigma_t' = 1/mm, so that a mean free path is a millimetre. Shape: relative RMS power
 //! error of the means over rings of 0.05 mean free paths out to 20, what chance adds to it taken off. Under `fitted` stands a
-//! sum of eight Gaussians (method energy) fitted to another run of the simulation.
+//! sum of twelve Gaussians (method energy) fitted to another run of the simulation.
 
 use cutis_optics::simulate::{BATCH, Estimates, Grid, Layer, LayeredSlab, Simulation};
 use cutis_optics::{

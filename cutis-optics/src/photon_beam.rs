@@ -96,6 +96,9 @@ impl Profile for PhotonBeam {
 
     /// Infinite at r = 0, as the logarithm.
     fn at_mm(&self, r_mm: f64) -> f64 {
+        if r_mm == 0.0 {
+            return f64::INFINITY;
+        }
         let g = &self.grosjean;
         let sigma_t = g.sigma_t_reduced_per_mm;
         let (from, to) = ((SHALLOWEST * r_mm.min(1.0 / sigma_t)).ln(), (DEEPEST / sigma_t).ln());
@@ -146,6 +149,7 @@ mod tests {
     #[test]
     fn it_is_positive_and_falls() {
         let b = beam(0.1, 0.9, 1.4);
+        assert_eq!(b.at_mm(0.0), f64::INFINITY);
         let mut last = f64::INFINITY;
         for x in [0.01, 0.1, 1.0, 3.0, 10.0] {
             let here = b.at_mm(x);

@@ -109,7 +109,7 @@ mod tests {
         let single = SingleScattering::new(&Medium::new(0.1, 0.9, 1.4).unwrap()).unwrap();
         let seen = WideBeam::new(single, 0.05);
         for r in [0.0, 0.03, 0.1, 0.5] {
-            let slow = inverse_hankel(r, 160.0, |k| seen.spectrum(k));
+            let slow = inverse_hankel(r, |k| seen.spectrum(k));
             // 48 nodes over a peak that is not smooth at the middle.
             assert!((seen.at_mm(r) / slow - 1.0).abs() < 1e-3, "{r}: {} {slow}", seen.at_mm(r));
         }

@@ -93,11 +93,13 @@ fn simulation(args: &SimulateArgs) -> miette::Result<Simulation> {
     photons_in_range(args.photons)?;
     in_range("--rings", args.rings, 1..=100_000, "1 to 100000")?;
     let layers = args.layer.iter().map(|words| parse_layer(words)).collect::<miette::Result<Vec<Layer>>>()?;
-    let radial_step_mm = args.ring_width.unwrap_or_else(|| ring_width_mm(&layers));
+    let width_mm = ring_width_mm(&layers);
+    let slab = LayeredSlab::in_air(layers).map_err(|error| miette!("{error}"))?;
+    ends(&slab)?;
+    let radial_step_mm = args.ring_width.unwrap_or(width_mm);
     if !(radial_step_mm > 0.0 && radial_step_mm.is_finite()) {
         bail!("--ring-width must be above 0 mm, got {radial_step_mm}");
     }
-    let slab = LayeredSlab::in_air(layers).map_err(|error| miette!("{error}"))?;
     let finite_mm: f64 = slab.layers().iter().map(|l| l.thickness_mm).filter(|d| d.is_finite()).sum();
     let endless = slab.layers().iter().any(|l| l.thickness_mm.is_infinite());
     // Below the finite layers of a half-space, as deep again as the rings reach.
@@ -110,6 +112,18 @@ fn simulation(args: &SimulateArgs) -> miette::Result<Simulation> {
         cosine_bins: COSINES,
     };
     Ok(Simulation { slab, grid, seed: args.seed })
+}
+
+/// Refuses layers in which light would walk for ever.
+pub fn ends(slab: &LayeredSlab) -> miette::Result<()> {
+    let number = slab.layers().len();
+    let last = &slab.layers()[number - 1];
+    if last.thickness_mm.is_infinite() && last.sigma_a_per_mm == 0.0 && last.sigma_s_per_mm > 0.0 {
+        bail!(
+            "layer {number} scatters without end and absorbs nothing: light would walk in it for ever; give it a thickness or some absorption"
+        );
+    }
+    Ok(())
 }
 
 /// Checks `--photons`.

@@ -300,6 +300,8 @@ fn nonsense_ends_with_code_2_and_one_clear_line() {
         (&["skin1", "--source", "monte-carlo", "--photons", "5"], "--photons must be 2048 to 10^12, got 5"),
         (&["skin1", "--source", "beam", "--roughness", "0.3"], "beam knows smooth surfaces only"),
         (&["skin1", "--roughness", "2"], "--roughness must be 0 to 1, got 2"),
+        (&["spectralon", "--source", "monte-carlo"], "light would walk in it for ever"),
+        (&["skin1", "--beam", "1e-18"], "--beam must be at least"),
         (&["skin1", "--beam", "0"], "--beam must be above 0 mm, got 0"),
         (&["skin1", "--fit", "fast", "--seven-tap"], "nothing to bound"),
         (&["skin1", "--source", "beam", "--fit", "fast"], "has to know the poles"),

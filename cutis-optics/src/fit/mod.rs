@@ -166,6 +166,9 @@ pub fn fit_with(profile: &dyn Profile, settings: &FitSettings) -> Result<Fit, Fi
         FitMethod::Powers => profile.powers().map(|powers| powers.sum()),
     };
     let sum = sum.ok_or(FitError::Unknown { method })?.sparse(gaussians);
+    if !sum.energy().is_finite() {
+        return Err(FitError::NoSolution { count: gaussians });
+    }
     Ok(Fit {
         method,
         relative_rms_power_error: relative_rms_power_error(profile, &sum)?,

@@ -178,6 +178,10 @@ fn powers_are_a_method_like_any_other() {
         assert!((f.energy - profile.total()).abs() < 1.1e-4, "{}", f.energy);
         assert!(f.relative_rms_power_error < limit, "{}", f.relative_rms_power_error);
     }
+    // Layers so different that the terms do not reach the sources of the lower one: all of it is in the last term.
+    let far = Stack::in_air(&[layer(0.1, 100.0, 1.4, 0.05), layer(0.1, 0.2, 1.4, f64::INFINITY)]).unwrap();
+    let f = fit(&far, 12, FitMethod::Powers).unwrap();
+    assert!((f.energy - far.total()).abs() < 1.1e-4, "{}", f.energy);
     // A sum of Gaussians does not say what it is made of.
     let sum = fit(&half_space, 3, FitMethod::Energy).unwrap().sum;
     for method in [FitMethod::Fast, FitMethod::Powers] {

@@ -41,10 +41,14 @@ impl Powers {
         };
         let mut weights: Vec<f64> = (1..=terms).map(weight).collect();
         let tail = beyond((terms as f64 + 0.5) * unit_mm2);
-        let scale = (total - tail) / weights.iter().sum::<f64>();
-        weights.iter_mut().for_each(|w| *w *= scale);
+        let sum = weights.iter().sum::<f64>();
+        if sum != 0.0 {
+            weights.iter_mut().for_each(|w| *w *= (total - tail) / sum);
+        }
+        // What is wider than all terms; that is all of it where the terms do not reach the nearest source.
+        let rest = total - weights.iter().sum::<f64>();
         if let Some(last) = weights.last_mut() {
-            *last += tail;
+            *last += rest;
         }
         Self { unit_mm2, weights }
     }

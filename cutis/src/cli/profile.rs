@@ -36,7 +36,7 @@ pub struct ProfileArgs {
     #[arg(long, value_name = "K")]
     pub gaussians: Option<usize>,
     /// How the sums are found: optimal has the least error and loses some energy, energy keeps the total; fast (four
-    /// Gaussians for every pole) and powers (multiples of one variance) are formulas, for dipole and multipole. The joint
+    /// Gaussians for every pole, for the dipole) and powers (multiples of one variance, for dipole and multipole) are formulas. The joint
     /// kernel of three channels always keeps energy
     #[arg(long, value_name = "METHOD", default_value = "energy", value_parser = super::names(METHODS.map(|(name, _)| name)))]
     pub fit: String,
@@ -48,7 +48,8 @@ pub struct ProfileArgs {
     /// mean free path for better-dipole, beam and monte-carlo, which go as 1/r towards a point]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub beam: Option<f64>,
-    /// Beckmann roughness of the surface, which holds less light back than a smooth one; for dipole and multipole [0 to 1]
+    /// Beckmann roughness of the surface, which holds less light back than a smooth one, by Schlick's approximation of Fresnel's equations; for dipole and multipole
+    /// [0 to 1]
     #[arg(long, value_name = "M", allow_negative_numbers = true)]
     pub roughness: Option<f32>,
     /// Photon packets of the source monte-carlo, for each channel [2048 to 10^12]

@@ -11,6 +11,9 @@ use cutis_optics::{
 use miette::{Result, miette};
 use std::time::Instant;
 
+/// Share of the light that the rings of a simulation may miss without a word.
+const MISSED_LIGHT: f64 = 1e-3;
+
 /// Names of the channels, as `--channel` takes them.
 pub const CHANNEL_NAMES: [&str; 3] = ["r", "g", "b"];
 
@@ -26,6 +29,8 @@ pub struct Channel {
     pub beam_standard_deviation_mm: Option<f64>,
     /// What chance may have done to the total, where it was simulated.
     pub total_standard_error: Option<f64>,
+    /// Light that left beyond the rings of a simulation, of what entered.
+    pub light_beyond_rings: f64,
     pub worst: WorstError,
     pub sum: ChannelFit,
     pub wall_seconds: f64,
@@ -81,7 +86,7 @@ pub fn compute(job: &Job) -> Result<Vec<Channel>> {
 fn of_layers(job: &Job, channel: Option<usize>, layers: &[TissueLayer]) -> Result<Channel> {
     let start = Instant::now();
     let source = job.source.unwrap_or_else(|| ProfileSource::default_for(layers));
-    let Sourced { profile, beam_standard_deviation_mm, total_standard_error } =
+    let Sourced { profile, beam_standard_deviation_mm, total_standard_error, light_beyond_rings } =
         source::of_layers(job, source, layers).map_err(|error| in_channel(channel, &error))?;
     let settings = job.fit_settings(layers);
     let fitted = fit_with(&*profile, &settings).map_err(|error| in_channel(channel, &error))?;
@@ -94,6 +99,7 @@ fn of_layers(job: &Job, channel: Option<usize>, layers: &[TissueLayer]) -> Resul
         profile,
         beam_standard_deviation_mm,
         total_standard_error,
+        light_beyond_rings,
         worst,
         sum: ChannelFit::Fitted(fitted),
         wall_seconds,
@@ -117,6 +123,7 @@ fn of_kernel(job: &Job, channel: usize, kernel: GaussianSum) -> Result<Channel> 
         profile: Box::new(kernel),
         beam_standard_deviation_mm: None,
         total_standard_error: None,
+        light_beyond_rings: 0.0,
         worst,
         sum,
         wall_seconds: start.elapsed().as_secs_f64(),
@@ -149,12 +156,30 @@ impl Channel {
         self.layers.iter().filter_map(of).collect()
     }
 
-    /// Warnings, one for each layer where classical diffusion is asked for and does not hold.
+    /// Warnings: more light than came, light that the rings of a simulation missed, and each layer where classical
+    /// diffusion is asked for and does not hold.
     pub fn warnings(&self) -> Vec<String> {
-        if !matches!(self.source, Some(ProfileSource::Dipole | ProfileSource::Multipole)) {
-            return Vec::new();
-        }
         let channel = self.name.map_or_else(String::new, |name| format!("channel {name}, "));
+        let total = self.profile.total();
+        if self.source == Some(ProfileSource::MonteCarlo) {
+            let missed = self.light_beyond_rings > MISSED_LIGHT * total;
+            return missed
+                .then(|| {
+                    format!(
+                        "{channel}{:.6} of the light leaves beyond the rings and is not in the profile",
+                        self.light_beyond_rings
+                    )
+                })
+                .into_iter()
+                .collect();
+        }
+        if !matches!(self.source, Some(ProfileSource::Dipole | ProfileSource::Multipole)) {
+            let gains = total > 1.0;
+            return gains
+                .then(|| format!("{channel}the source gives back {total:.4} of the light, more than it got; take dipole or monte-carlo instead"))
+                .into_iter()
+                .collect();
+        }
         let numbered = self.validity().into_iter().enumerate().filter(|(_, validity)| !validity.is_good());
         let weak = numbered.map(|(i, validity)| format!("{channel}layer {}: {validity}", i + 1));
         let thin = Stack::in_air(&self.layers).map(|stack| stack.too_thin()).unwrap_or_default();

@@ -2,7 +2,7 @@
 
 use super::job::Job;
 use crate::progress::Bar;
-use crate::simulate::in_parallel;
+use crate::simulate::{ends, in_parallel};
 use cutis_optics::simulate::{Grid, Layer, LayeredSlab, Simulation};
 use cutis_optics::{BoxedProfile, Medium, ProfileSource, RingProfile, TissueLayer, WideBeam};
 use cutis_render::prepare::RhoDt;
@@ -11,6 +11,8 @@ use miette::{Result, miette};
 /// Standard deviation of the beam that profiles with a peak are seen under, in transport mean free paths, unless told
 /// otherwise.
 const BEAM_MEAN_FREE_PATHS: f64 = 0.05;
+/// Narrowest beam, in transport mean free paths: what is narrower is a point.
+const BEAM_LEAST: f64 = 1e-4;
 /// Width of a ring of the simulation, in transport mean free paths of the top layer.
 const RING_MEAN_FREE_PATHS: f64 = 0.05;
 /// Rings reach to where e^-12 of the slowest decay is left, …
@@ -25,27 +27,37 @@ pub struct Sourced {
     pub beam_standard_deviation_mm: Option<f64>,
     /// What chance may have done to the total, where it was simulated.
     pub total_standard_error: Option<f64>,
+    /// Light that left beyond the rings of a simulation, of what entered.
+    pub light_beyond_rings: f64,
 }
 
 /// The profile of `layers` as the job asks for it.
 pub fn of_layers(job: &Job, source: ProfileSource, layers: &[TissueLayer]) -> Result<Sourced> {
-    let (point, total_standard_error) = match source {
+    let (point, total_standard_error, light_beyond_rings): (BoxedProfile, _, _) = match source {
         ProfileSource::MonteCarlo => {
-            let (profile, error) = simulated(job, layers)?;
-            (profile, Some(error))
+            let (rings, error) = simulated(job, layers)?;
+            let beyond = rings.beyond().value;
+            (Box::new(rings), Some(error), beyond)
         }
-        _ => (computed(job, source, layers)?, None),
+        _ => (computed(job, source, layers)?, None, 0.0),
     };
     let usual_mm = || {
         let l_mm = layers[0].medium.transport_mean_free_path_mm();
         source.has_peak().then_some(BEAM_MEAN_FREE_PATHS * l_mm)
     };
     let beam_standard_deviation_mm = job.beam_mm.or_else(usual_mm);
+    let l_mm = layers[0].medium.transport_mean_free_path_mm();
+    if let Some(mm) = beam_standard_deviation_mm.filter(|mm| *mm < BEAM_LEAST * l_mm) {
+        return Err(miette!(
+            "--beam must be at least {BEAM_LEAST:e} mean free paths, here {} mm, got {mm} mm",
+            BEAM_LEAST * l_mm
+        ));
+    }
     let profile: BoxedProfile = match beam_standard_deviation_mm {
         Some(deviation_mm) => Box::new(WideBeam::new(point, deviation_mm)),
         None => point,
     };
-    Ok(Sourced { profile, beam_standard_deviation_mm, total_standard_error })
+    Ok(Sourced { profile, beam_standard_deviation_mm, total_standard_error, light_beyond_rings })
 }
 
 fn computed(job: &Job, source: ProfileSource, layers: &[TissueLayer]) -> Result<BoxedProfile> {
@@ -64,18 +76,19 @@ fn lets_in(medium: &Medium, roughness: f32) -> f64 {
 }
 
 /// A simulated profile, and the standard error of its total.
-fn simulated(job: &Job, layers: &[TissueLayer]) -> Result<(BoxedProfile, f64)> {
+fn simulated(job: &Job, layers: &[TissueLayer]) -> Result<(RingProfile, f64)> {
     if job.roughness.is_some() {
         return Err(miette!("the source monte-carlo knows smooth surfaces only: leave --roughness out"));
     }
     let slab = LayeredSlab::in_air(layers.iter().map(isotropic).collect()).map_err(|e| miette!("{e}"))?;
+    ends(&slab)?;
     let entered = 1.0 - slab.specular_reflectance();
     let simulation = Simulation { slab, grid: grid(layers), seed: job.seed };
     let bar = Bar::new(job.verbose);
     let estimates = in_parallel(&simulation, job.photons, &bar);
     bar.finish();
     let error = estimates.diffuse_reflectance().standard_error / entered;
-    Ok((Box::new(RingProfile::from_estimates(&estimates)), error))
+    Ok((RingProfile::from_estimates(&estimates), error))
 }
 
 /// Reduced scattering has no phase function: isotropic, as all other sources take it.

@@ -322,6 +322,24 @@ mod tests {
     }
 
     #[test]
+    fn two_slabs_glued_are_nearly_one_of_twice_the_thickness() {
+        // Kubelka and Munk's sum would be exact for light that is diffuse at the cut. Here what crosses it lights the lower
+        // slab anew from one mean free path (0.2 mm) under its face: 4.7 to 4.9 % too much light comes through, whatever the
+        // thickness, and the reflectance feels it the less, the deeper the cut (0.34, 0.039, 0.001 %).
+        for (thickness_mm, percent) in [(1.0, 0.4), (2.0, 0.05), (4.0, 0.002)] {
+            let half = layer(0.05, 5.0, 1.4, thickness_mm);
+            let glued = Stack::in_air(&[half, half]).unwrap().response(0.0);
+            let whole = Stack::in_air(&[TissueLayer { thickness_mm: 2.0 * thickness_mm, ..half }]).unwrap();
+            let whole = whole.response(0.0);
+            let reflectance = 100.0 * (glued.reflectance_down / whole.reflectance_down - 1.0);
+            let transmittance = 100.0 * (glued.transmittance_down / whole.transmittance_down - 1.0);
+            eprintln!("two of {thickness_mm} mm: R {reflectance:+.3} %, T {transmittance:+.3} %");
+            assert!(reflectance.abs() < percent, "R {reflectance}");
+            assert!((4.5..5.0).contains(&transmittance), "T {transmittance}");
+        }
+    }
+
+    #[test]
     fn two_layers_meet_the_monte_carlo() {
         // Scattering dominates, so that diffusion theory holds: totals within 4 % of transport theory.
         let layers = [layer(0.01, 5.0, 1.4, 1.5), layer(0.1, 4.0, 1.4, f64::INFINITY)];

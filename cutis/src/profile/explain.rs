@@ -2,7 +2,8 @@
 
 use super::Profiled;
 use super::channel::Channel;
-use cutis_optics::{DiffusionValidity, FitMethod, Medium, Stack, TooThin, fit};
+use super::job::Job;
+use cutis_optics::{DiffusionValidity, FitSettings, Medium, Stack, TooThin, fit_with};
 use miette::{Result, miette};
 use serde::Serialize;
 
@@ -40,11 +41,11 @@ pub struct Trial {
 }
 
 /// An explanation for each channel.
-pub fn all(profiled: &Profiled, method: FitMethod) -> Result<Vec<Explanation>> {
-    profiled.channels.iter().map(|channel| explanation(channel, method)).collect()
+pub fn all(profiled: &Profiled, job: &Job) -> Result<Vec<Explanation>> {
+    profiled.channels.iter().map(|channel| explanation(channel, job)).collect()
 }
 
-fn explanation(channel: &Channel, method: FitMethod) -> Result<Explanation> {
+fn explanation(channel: &Channel, job: &Job) -> Result<Explanation> {
     // Transmittance is a matter of the whole stack, whichever model gave the reflectance.
     let stack = Stack::in_air(&channel.layers).ok();
     let thin = stack.as_ref().map(Stack::too_thin).unwrap_or_default();
@@ -54,7 +55,7 @@ fn explanation(channel: &Channel, method: FitMethod) -> Result<Explanation> {
         total_diffuse_reflectance: channel.profile.total(),
         total_transmittance: stack.map(|stack| stack.transmittance_spectrum(0.0)),
         layers: media.zip(channel.validity()).map(|((i, medium), v)| layer(medium, v, thin(i + 1))).collect(),
-        fits: TRIED.map(|gaussians| trial(channel, gaussians, method)).collect::<Result<_>>()?,
+        fits: TRIED.map(|gaussians| trial(channel, gaussians, job)).collect::<Result<_>>()?,
     })
 }
 
@@ -69,8 +70,9 @@ fn layer(medium: &Medium, validity: DiffusionValidity, thin: Option<TooThin>) ->
     }
 }
 
-fn trial(channel: &Channel, gaussians: usize, method: FitMethod) -> Result<Trial> {
-    let fit = fit(&*channel.profile, gaussians, method)
-        .map_err(|error| miette!("{gaussians} Gaussians: {error}"))?;
+fn trial(channel: &Channel, gaussians: usize, job: &Job) -> Result<Trial> {
+    let settings = FitSettings { gaussians, ..job.fit_settings(&channel.layers) };
+    let fit =
+        fit_with(&*channel.profile, &settings).map_err(|error| miette!("{gaussians} Gaussians: {error}"))?;
     Ok(Trial { gaussians, relative_rms_power_error: fit.relative_rms_power_error, energy: fit.energy })
 }

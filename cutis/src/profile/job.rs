@@ -45,11 +45,8 @@ impl Job {
             in_range("--gaussians", args.gaussians_or_default(), 1..=ProfileArgs::GAUSSIANS_MAX, "1 to 16")?;
         let source = args.source.as_ref().map(|name| name.parse::<ProfileSource>()).transpose();
         let source = source.map_err(|error| miette!("--source: {error}"))?;
-        if source.is_some() && matches!(material.substance, Substance::Kernel(_)) {
-            bail!(
-                "{} is a finished kernel without layers: --source has nothing to compute it from",
-                material.name
-            );
+        if matches!(material.substance, Substance::Kernel(_)) {
+            refuse_for_kernel(args, &material)?;
         }
         let channel = args.channel.as_deref().and_then(|name| CHANNEL_NAMES.iter().position(|c| *c == name));
         let method =
@@ -93,6 +90,23 @@ impl Job {
             method: self.method,
             seven_tap_mm: self.seven_tap.then(shortest),
         }
+    }
+}
+
+/// A finished kernel has no layers that these could be about.
+fn refuse_for_kernel(args: &ProfileArgs, material: &Material) -> Result<()> {
+    let given = [
+        ("--source", args.source.is_some()),
+        ("--beam", args.beam.is_some()),
+        ("--roughness", args.roughness.is_some()),
+        ("--seven-tap", args.seven_tap),
+    ];
+    match given.into_iter().find(|(_, given)| *given) {
+        Some((flag, _)) => Err(miette!(
+            "{} is a finished kernel without layers: {flag} has nothing to work on",
+            material.name
+        )),
+        None => Ok(()),
     }
 }
 

@@ -46,7 +46,7 @@ pub fn run(args: &ProfileArgs, verbose: u8) -> Result<Outcome> {
     }
     let written = job.exports.iter().map(|export| export.write(&profiled)).collect::<Result<Vec<_>>>()?;
     let translations = written.into_iter().flatten().collect();
-    let explanations = if job.explain { Some(explain::all(&profiled, job.method)?) } else { None };
+    let explanations = if job.explain { Some(explain::all(&profiled, &job)?) } else { None };
     let report = Report::new(&profiled, explanations, translations, start.elapsed().as_secs_f64());
     if job.json {
         talk::say(&report.json().into_diagnostic()?)?;

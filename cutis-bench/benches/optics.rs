@@ -54,8 +54,7 @@ fn simulation(g: f64, refractive_index: f64, thickness_mm: f64) -> Simulation {
     Simulation {
         slab: LayeredSlab::in_air(vec![layer]).expect("the layer is possible"),
         grid: Grid {
-            radial_step_mm: 0.01,
-            radial_bins: 200,
+            rings: Rings::even(0.01, 200).expect("the numbers are in their ranges"),
             depth_step_mm: 0.01,
             depth_bins: 100,
             cosine_bins: 20,

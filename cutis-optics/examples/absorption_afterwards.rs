@@ -66,14 +66,13 @@ fn walk(g: f64, packets: u64) -> PathLengths {
 /// The same with absorption, in even rings as fine as the finest of skin.
 fn direct(absorption: [f64; 2], g: f64, packets: u64) -> Estimates {
     let grid = Grid {
-        radial_step_mm: WIDTH_MM,
-        radial_bins: 800,
+        rings: Rings::even(WIDTH_MM, 800).expect("the numbers are in their ranges"),
         depth_step_mm: 1.0,
         depth_bins: 1,
         cosine_bins: 0,
     };
     let slab = LayeredSlab::in_air(skin(absorption, g)).expect("skin is possible");
-    let simulation = Simulation { slab, grid, seed: 2 };
+    let simulation = Simulation { slab, grid: grid.clone(), seed: 2 };
     let tallies: Vec<_> =
         (0..packets.div_ceil(BATCH)).into_par_iter().map(|b| simulation.batch(b * BATCH, BATCH)).collect();
     let mut estimates = Estimates::new(&grid, 2);

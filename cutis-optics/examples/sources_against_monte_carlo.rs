@@ -5,7 +5,7 @@
 //! error of the means over rings of 0.05 mean free paths out to 20, what chance adds to it taken off. Under `fitted` stands a
 //! sum of twelve Gaussians (method energy) fitted to another run of the simulation.
 
-use cutis_optics::simulate::{BATCH, Estimates, Grid, Layer, LayeredSlab, Simulation};
+use cutis_optics::simulate::{BATCH, Estimates, Grid, Layer, LayeredSlab, Rings, Simulation};
 use cutis_optics::{
     Dipole, FitMethod, Medium, Profile, ProfileSource, RingProfile, SingleScattering, TissueLayer, WideBeam,
     fit,
@@ -72,13 +72,12 @@ fn simulate(medium: &Medium, packets: u64, seed: u64, finer: usize) -> Result<Es
     };
     let slab = LayeredSlab::in_air(vec![layer])?;
     let grid = Grid {
-        radial_step_mm: RING_MM / finer as f64,
-        radial_bins: RINGS * finer,
+        rings: Rings::even(RING_MM / finer as f64, RINGS * finer)?,
         depth_step_mm: 1.0,
         depth_bins: 1,
         cosine_bins: 1,
     };
-    let simulation = Simulation { slab, grid, seed };
+    let simulation = Simulation { slab, grid: grid.clone(), seed };
     let batches: Vec<_> =
         (0..packets / BATCH).into_par_iter().map(|b| simulation.batch(b * BATCH, BATCH)).collect();
     let mut estimates = Estimates::new(&grid, 1);

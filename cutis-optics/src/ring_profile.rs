@@ -38,7 +38,7 @@ impl RingProfile {
         let per_entered =
             |e: Estimate| Estimate { value: e.value / entered, standard_error: e.standard_error / entered };
         let shares: Vec<Estimate> = estimates.reflectance_by_ring().into_iter().map(per_entered).collect();
-        Self::from_shares(estimates.ring_edges_mm(), &shares)
+        Self::from_shares(estimates.ring_edges_mm().to_vec(), &shares)
     }
 
     /// Edges of the rings, from 0 outwards: one more than there are rings.
@@ -121,7 +121,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use super::*;
     use crate::oracle::{bessel_j0, simpson};
-    use crate::simulate::{Grid, Layer, LayeredSlab, Simulation};
+    use crate::simulate::{Grid, Layer, LayeredSlab, Rings, Simulation};
 
     fn share(value: f64) -> Estimate {
         Estimate { value, standard_error: 0.1 * value }
@@ -189,7 +189,7 @@ mod tests {
             thickness_mm: f64::INFINITY,
         };
         let grid =
-            Grid { radial_step_mm: 0.1, radial_bins: 20, depth_step_mm: 1.0, depth_bins: 1, cosine_bins: 0 };
+            Grid { rings: Rings::even(0.1, 20).unwrap(), depth_step_mm: 1.0, depth_bins: 1, cosine_bins: 0 };
         let slab = LayeredSlab::in_air(vec![layer]).unwrap();
         let estimates = Simulation { slab, grid, seed: 1 }.run(20_000);
         let profile = RingProfile::from_estimates(&estimates);

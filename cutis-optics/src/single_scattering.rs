@@ -82,7 +82,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use super::*;
     use crate::oracle::{hankel, simpson};
-    use crate::simulate::{Grid, Layer, LayeredSlab, Simulation};
+    use crate::simulate::{Grid, Layer, LayeredSlab, Rings, Simulation};
 
     fn single(sigma_a: f64, sigma_s: f64, n: f64) -> SingleScattering {
         SingleScattering::new(&Medium::new(sigma_a, sigma_s, n).unwrap()).unwrap()
@@ -135,7 +135,7 @@ mod tests {
         let slab = LayeredSlab::in_air(vec![layer]).unwrap();
         let entered = 1.0 - slab.specular_reflectance();
         let grid =
-            Grid { radial_step_mm: 0.25, radial_bins: 4, depth_step_mm: 1.0, depth_bins: 1, cosine_bins: 1 };
+            Grid { rings: Rings::even(0.25, 4).unwrap(), depth_step_mm: 1.0, depth_bins: 1, cosine_bins: 1 };
         let estimates = Simulation { slab, grid, seed: 4 }.run(409_600);
         let s = single(sigma_a, sigma_s, n);
         let truth = estimates.diffuse_reflectance();

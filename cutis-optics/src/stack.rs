@@ -177,7 +177,7 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use super::*;
     use crate::oracle::simpson;
-    use crate::simulate::{Grid, Layer, LayeredSlab, Simulation};
+    use crate::simulate::{Grid, Layer, LayeredSlab, Rings, Simulation};
 
     fn layer(sigma_a: f64, sigma_s_reduced: f64, index: f64, thickness_mm: f64) -> TissueLayer {
         TissueLayer { medium: Medium::new(sigma_a, sigma_s_reduced, index).unwrap(), thickness_mm }
@@ -353,7 +353,7 @@ mod tests {
         });
         let slab = LayeredSlab::in_air(simulated.to_vec()).unwrap();
         let grid =
-            Grid { radial_step_mm: 1.0, radial_bins: 1, depth_step_mm: 1.0, depth_bins: 1, cosine_bins: 1 };
+            Grid { rings: Rings::even(1.0, 1).unwrap(), depth_step_mm: 1.0, depth_bins: 1, cosine_bins: 1 };
         let specular = slab.specular_reflectance();
         let estimates = Simulation { slab, grid, seed: 1 }.run(40_960);
         let truth = estimates.diffuse_reflectance();

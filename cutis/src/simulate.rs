@@ -6,7 +6,7 @@ use crate::layer_words::parse_layer;
 use crate::machine::choose_threads;
 use crate::progress::Bar;
 use crate::{Outcome, talk};
-use cutis_optics::simulate::{BATCH, Estimate, Estimates, Grid, Layer, LayeredSlab, Simulation};
+use cutis_optics::simulate::{BATCH, Estimate, Estimates, Grid, Layer, LayeredSlab, Rings, Simulation};
 use cutis_render::Progress;
 use miette::{IntoDiagnostic, bail, miette};
 use rayon::prelude::*;
@@ -105,8 +105,8 @@ fn simulation(args: &SimulateArgs) -> miette::Result<Simulation> {
     // Below the finite layers of a half-space, as deep again as the rings reach.
     let depth_mm = finite_mm + if endless { radial_step_mm * args.rings as f64 } else { 0.0 };
     let grid = Grid {
-        radial_step_mm,
-        radial_bins: args.rings,
+        rings: Rings::even(radial_step_mm, args.rings)
+            .map_err(|error| miette!("--ring-width, --rings: {error}"))?,
         depth_step_mm: depth_mm / SHEETS as f64,
         depth_bins: SHEETS,
         cosine_bins: COSINES,

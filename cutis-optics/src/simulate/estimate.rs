@@ -30,7 +30,7 @@ impl Estimates {
     pub fn new(grid: &Grid, layers: usize) -> Self {
         let slots = Slots::new(grid, layers);
         let sums = vec![[0.0; 3]; slots.count];
-        Self { grid: *grid, slots, packets: 0, batches: 0, sums, packets_squared: 0.0 }
+        Self { grid: grid.clone(), slots, packets: 0, batches: 0, sums, packets_squared: 0.0 }
     }
 
     /// Adds a batch.
@@ -110,22 +110,23 @@ impl Estimates {
 
     /// Fraction that leaves through the top of each ring, and beyond the last.
     pub fn reflectance_by_ring(&self) -> Vec<Estimate> {
-        self.range(self.slots.reflectance_by_radius, self.grid.radial_bins + 1)
+        self.range(self.slots.reflectance_by_radius, self.grid.rings.count() + 1)
     }
 
     /// Edges of the rings from 0 outwards, mm.
-    pub fn ring_edges_mm(&self) -> Vec<f64> {
-        (0..=self.grid.radial_bins).map(|i| i as f64 * self.grid.radial_step_mm).collect()
+    pub fn ring_edges_mm(&self) -> &[f64] {
+        self.grid.rings.edges_mm()
     }
 
     /// Middle of each ring, mm.
     pub fn ring_radii_mm(&self) -> Vec<f64> {
-        (0..self.grid.radial_bins).map(|i| (i as f64 + 0.5) * self.grid.radial_step_mm).collect()
+        self.ring_edges_mm().windows(2).map(|ring| 0.5 * (ring[0] + ring[1])).collect()
     }
 
     fn rings(&self, first: usize) -> Vec<Estimate> {
-        let area_mm2 = |i: usize| PI * self.grid.radial_step_mm.powi(2) * (2 * i + 1) as f64;
-        (0..self.grid.radial_bins).map(|i| self.at(first + i, 1.0 / area_mm2(i))).collect()
+        let area_mm2 = |ring: &[f64]| PI * (ring[1] * ring[1] - ring[0] * ring[0]);
+        let rings = self.ring_edges_mm().windows(2).enumerate();
+        rings.map(|(i, ring)| self.at(first + i, 1.0 / area_mm2(ring))).collect()
     }
 
     fn range(&self, first: usize, count: usize) -> Vec<Estimate> {

@@ -31,7 +31,7 @@ fn one_walk_without_absorption_serves_every_absorption_of_skin() {
     let lengths = paths(&skin([0.0; 2]), &[0.03, 0.03], PACKETS);
     for absorption in [[0.03, 0.03], [0.03, 20.0], [40.0, 0.03], [40.0, 20.0], [1.0, 0.5]] {
         let grid =
-            Grid { radial_step_mm: 0.1, radial_bins: 20, depth_step_mm: 1.0, depth_bins: 1, cosine_bins: 0 };
+            Grid { rings: Rings::even(0.1, 20).unwrap(), depth_step_mm: 1.0, depth_bins: 1, cosine_bins: 0 };
         let slab = LayeredSlab::in_air(skin(absorption)).unwrap();
         let direct = Simulation { slab, grid, seed: 3 }.run(PACKETS);
         let entered = 1.0 - direct.specular_reflectance();

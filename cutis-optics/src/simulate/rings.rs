@@ -4,6 +4,9 @@
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rings {
     edges_mm: Vec<f64>,
+    /// Rings of the same width, and how many of them go into a millimetre.
+    even: usize,
+    per_mm: f64,
 }
 
 /// Why rings are refused.
@@ -37,7 +40,15 @@ impl Rings {
             edge_mm *= growth;
             edges_mm.push(edge_mm);
         }
-        Ok(Self { edges_mm })
+        Ok(Self { edges_mm, even, per_mm: width_mm.recip() })
+    }
+
+    /// So many rings of the same width.
+    ///
+    /// # Errors
+    /// If a number is out of its range.
+    pub fn even(width_mm: f64, count: usize) -> Result<Self, RingError> {
+        Self::new(width_mm, count, 2.0, 0.0)
     }
 
     /// From 0.005 mm near the beam, a twenty-seventh of the transport mean free path in epidermis at 500 nm, to 30 mm.
@@ -56,8 +67,13 @@ impl Rings {
     }
 
     /// The ring at this radius, [`Rings::count`] beyond the last.
+    #[inline]
     pub(super) fn at(&self, r_mm: f64) -> usize {
-        self.edges_mm[1..].partition_point(|&edge_mm| edge_mm <= r_mm)
+        let place = r_mm * self.per_mm;
+        if place < self.even as f64 {
+            return place as usize;
+        }
+        self.even + self.edges_mm[self.even + 1..].partition_point(|&edge_mm| edge_mm <= r_mm)
     }
 }
 
@@ -72,6 +88,7 @@ mod tests {
         assert_eq!(rings.edges_mm(), [0.0, 0.5, 1.0, 2.0, 4.0]);
         let of = [0.0, 0.499, 0.5, 1.5, 2.0, 3.999, 4.0, f64::INFINITY].map(|r_mm| rings.at(r_mm));
         assert_eq!(of, [0, 0, 1, 2, 3, 3, 4, 4]);
+        assert_eq!(Rings::even(0.5, 3).unwrap().edges_mm(), [0.0, 0.5, 1.0, 1.5]);
         assert!(Rings::new(0.5, 2, 1.0, 3.0).unwrap_err().to_string().starts_with("growth must be"));
     }
 }

@@ -2,18 +2,17 @@
 
 use super::lanes::{Lanes, bins, indices, splat};
 use super::packets::Packets;
+use super::rings::Rings;
 use super::walk::{Exits, Record};
 
 /// Weight below which a packet plays for its life.
 const LIGHT: f64 = 1e-4;
 
 /// How finely exits and absorption are counted. What lies beyond the last bin is counted in one bin more.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
-    /// Width of a ring around the beam, mm.
-    pub radial_step_mm: f64,
-    /// Rings.
-    pub radial_bins: usize,
+    /// Rings around the beam.
+    pub rings: Rings,
     /// Height of a sheet, mm.
     pub depth_step_mm: f64,
     /// Sheets.
@@ -52,7 +51,7 @@ const FIXED: usize = 5;
 
 impl Slots {
     pub(super) fn new(grid: &Grid, layers: usize) -> Self {
-        let rings = grid.radial_bins + 1;
+        let rings = grid.rings.count() + 1;
         let reflectance_by_radius = FIXED + layers;
         let transmittance_by_radius = reflectance_by_radius + rings;
         let reflectance_by_cosine = transmittance_by_radius + rings;
@@ -87,10 +86,10 @@ pub(super) struct Counter {
 impl Counter {
     pub(super) fn new(grid: &Grid, layers: usize) -> Self {
         Self {
-            grid: *grid,
+            grid: grid.clone(),
             layers,
             roulette: 0.0,
-            exits_by_radius: vec![0.0; 2 * (grid.radial_bins + 1)],
+            exits_by_radius: vec![0.0; 2 * (grid.rings.count() + 1)],
             exits_by_cosine: vec![0.0; 2 * grid.cosine_bins],
             absorbed: vec![0.0; layers * (grid.depth_bins + 1)],
         }
@@ -100,7 +99,7 @@ impl Counter {
     pub(super) fn tally(self, packets: u64, specular_reflectance: f64) -> Tally {
         let slots = Slots::new(&self.grid, self.layers);
         let mut values = vec![0.0; slots.count];
-        let (reflected, transmitted) = self.exits_by_radius.split_at(self.grid.radial_bins + 1);
+        let (reflected, transmitted) = self.exits_by_radius.split_at(self.grid.rings.count() + 1);
         values[SPECULAR] = specular_reflectance * packets as f64;
         values[REFLECTANCE] = reflected.iter().sum();
         values[TRANSMITTANCE] = transmitted.iter().sum();
@@ -145,10 +144,12 @@ impl Record for Counter {
     #[inline(always)]
     fn leave(&mut self, exits: &Exits) {
         let weight = exits.weight.to_array();
-        let rings = splat(self.grid.radial_bins as f64);
-        let ring = bins(exits.r2_mm2.sqrt() * splat(self.grid.radial_step_mm.recip()), rings);
-        let ring = indices(ring + (exits.downwards & (rings + splat(1.0))));
-        ring.into_iter().zip(weight).for_each(|(ring, weight)| self.exits_by_radius[ring] += weight);
+        let half = self.grid.rings.count() + 1;
+        let side = indices(exits.downwards & splat(half as f64));
+        let radii_mm = exits.r2_mm2.sqrt().to_array();
+        for ((r_mm, side), weight) in radii_mm.into_iter().zip(side).zip(weight) {
+            self.exits_by_radius[side + self.grid.rings.at(r_mm)] += weight;
+        }
         if self.grid.cosine_bins > 0 {
             let cosines = splat(self.grid.cosine_bins as f64);
             let bin = bins(exits.cos * cosines, cosines - splat(1.0));

@@ -3,7 +3,7 @@
 use super::job::Job;
 use crate::progress::Bar;
 use crate::simulate::{ends, in_parallel};
-use cutis_optics::simulate::{Grid, Layer, LayeredSlab, Simulation};
+use cutis_optics::simulate::{Grid, Layer, LayeredSlab, Rings, Simulation};
 use cutis_optics::{BoxedProfile, Medium, ProfileSource, RingProfile, TissueLayer, WideBeam};
 use cutis_render::prepare::RhoDt;
 use miette::{Result, miette};
@@ -13,12 +13,15 @@ use miette::{Result, miette};
 const BEAM_MEAN_FREE_PATHS: f64 = 0.05;
 /// Narrowest beam, in transport mean free paths: what is narrower is a point.
 const BEAM_LEAST: f64 = 1e-4;
-/// Width of a ring of the simulation, in transport mean free paths of the top layer.
-const RING_MEAN_FREE_PATHS: f64 = 0.05;
-/// Rings reach to where e^-12 of the slowest decay is left, …
+/// Width of the innermost rings of the simulation, in standard deviations of the usual beam: fine enough that it does not
+/// matter that each is taken as even.
+const RING_DEVIATIONS: f64 = 0.2;
+/// These are so many; beyond, each edge is so much farther than the one before, …
+const EVEN_RINGS: usize = 40;
+const GROWTH: f64 = 1.025;
+/// … out to where e^-12 of the slowest decay is left, or, where hardly anything is absorbed, to so many mean free paths.
 const REACH_EXPONENT: f64 = 12.0;
-/// … but are so many at least and at most.
-const RINGS: (f64, f64) = (200.0, 4000.0);
+const REACH_MEAN_FREE_PATHS: f64 = 1e5;
 
 /// A profile, and how it is seen.
 pub struct Sourced {
@@ -83,7 +86,7 @@ fn simulated(job: &Job, layers: &[TissueLayer]) -> Result<(RingProfile, f64)> {
     let slab = LayeredSlab::in_air(layers.iter().map(isotropic).collect()).map_err(|e| miette!("{e}"))?;
     ends(&slab)?;
     let entered = 1.0 - slab.specular_reflectance();
-    let simulation = Simulation { slab, grid: grid(layers), seed: job.seed };
+    let simulation = Simulation { slab, grid: grid(job, layers)?, seed: job.seed };
     let bar = Bar::new(job.verbose);
     let estimates = in_parallel(&simulation, job.photons, &bar);
     bar.finish();
@@ -102,15 +105,13 @@ fn isotropic(layer: &TissueLayer) -> Layer {
     }
 }
 
-fn grid(layers: &[TissueLayer]) -> Grid {
-    let radial_step_mm = RING_MEAN_FREE_PATHS * layers[0].medium.transport_mean_free_path_mm();
-    let slowest_per_mm = layers.iter().map(|l| l.medium.sigma_tr_per_mm()).fold(f64::INFINITY, f64::min);
-    let rings = (REACH_EXPONENT / (slowest_per_mm * radial_step_mm)).clamp(RINGS.0, RINGS.1);
-    Grid {
-        radial_step_mm,
-        radial_bins: rings as usize,
-        depth_step_mm: radial_step_mm,
-        depth_bins: 1,
-        cosine_bins: 1,
-    }
+fn grid(job: &Job, layers: &[TissueLayer]) -> Result<Grid> {
+    let usual_mm = BEAM_MEAN_FREE_PATHS * layers[0].medium.transport_mean_free_path_mm();
+    let width_mm = RING_DEVIATIONS * job.beam_mm.unwrap_or(usual_mm).min(usual_mm);
+    let longest = |length: fn(&Medium) -> f64| layers.iter().map(|l| length(&l.medium)).fold(0.0, f64::max);
+    let reach_mm = (REACH_EXPONENT * longest(Medium::diffuse_mean_free_path_mm))
+        .min(REACH_MEAN_FREE_PATHS * longest(Medium::transport_mean_free_path_mm));
+    let rings =
+        Rings::new(width_mm, EVEN_RINGS, GROWTH, reach_mm).map_err(|error| miette!("rings: {error}"))?;
+    Ok(Grid { rings, depth_step_mm: reach_mm, depth_bins: 1, cosine_bins: 0 })
 }

@@ -2,11 +2,11 @@
 
 use core::f64::consts::{PI, TAU};
 
-/// Step in u, k = k_half sinh u: Simpson's rule leaves 1e-11 of a spectrum that is smooth there.
+/// Step in u, k = k_half sinh u: Simpson's rule errs by its fourth power.
 const STEP: f64 = 0.005;
 /// Steps to a turn of the Bessel function: Simpson's rule then errs by 1e-6 of what cancels there.
 const STEPS_PER_TURN: f64 = 16.0;
-/// Most steps: a tenth of a second. Past it, waves too fast for them are cut off; at such radii they cancel.
+/// Most steps, so that no radius takes for ever. Where more were needed, the fastest waves are met by too few of them.
 const STEPS_MAX: f64 = 400_000.0;
 /// Where k F(k) has fallen to this part of its size at half height, it ends.
 const NEGLIGIBLE: f64 = 1e-13;

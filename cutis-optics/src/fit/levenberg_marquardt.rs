@@ -7,7 +7,7 @@ use super::problem::{Derivatives, Problem, Solution};
 use super::seven_tap::SevenTap;
 use nalgebra::{DMatrix, DVector};
 
-/// Steps, taken or refused, before giving up; measured profiles need 5 to 30.
+/// Steps, taken or refused, before giving up: far more than any measured profile has needed.
 const STEPS_MAX: usize = 300;
 /// The last step promises less than this part of the cost; steps square the distance, so it leaves 1e-10 at most.
 const GAIN_LAST: f64 = 1e-5;

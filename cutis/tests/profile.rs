@@ -275,6 +275,24 @@ fn a_slab_too_thin_for_diffusion_gives_a_number_and_a_warning() {
 }
 
 #[test]
+fn a_simulated_profile_holds_all_the_light() {
+    // A thin dense layer over a clear one: light spreads a thousand times as far as the top layer's mean free path.
+    let layers = ["--layer", "mu_a=0.01,mu_s=100,n=1.4,d=0.02", "--layer", "mu_a=0.001,mu_s=0.2,n=1.4"];
+    let run_with = |extra: &[&str]| [&layers[..], extra].concat();
+    let report = json(&run_with(&["--source", "monte-carlo", "--photons", "10240", "--seed", "1"]));
+    let folder = tempfile::tempdir().expect("a folder");
+    let words = [&["simulate", "--json"], &run_with(&["--photons", "10240", "--seed", "1"])[..]].concat();
+    let simulated: Value =
+        serde_json::from_str(&stdout(&run(folder.path(), &words))).expect("one JSON object");
+    // Per light that entered; the same packets. What the profile may miss without a warning is a thousandth.
+    let entered = 1.0 - number(&simulated["specular_reflectance"]);
+    let all = number(&simulated["diffuse_reflectance"]) / entered;
+    let held = number(&report["total_diffuse_reflectance"]);
+    assert!((held / all - 1.0).abs() < 1e-3, "{held} of {all}");
+    assert_eq!(report["warnings"].as_array().map(Vec::len), Some(0));
+}
+
+#[test]
 fn seven_taps_bound_the_variances() {
     let report = json(&["cream", "--gaussians", "4", "--seven-tap"]);
     let variances: Vec<f64> =

@@ -278,10 +278,10 @@ fn a_slab_too_thin_for_diffusion_gives_a_number_and_a_warning() {
 fn a_simulated_profile_holds_all_the_light() {
     // A thin dense layer over a clear one: light spreads a thousand times as far as the top layer's mean free path.
     let layers = ["--layer", "mu_a=0.01,mu_s=100,n=1.4,d=0.02", "--layer", "mu_a=0.001,mu_s=0.2,n=1.4"];
-    let run_with = |extra: &[&str]| [&layers[..], extra].concat();
-    let report = json(&run_with(&["--source", "monte-carlo", "--photons", "10240", "--seed", "1"]));
+    let packets = ["--photons", "10240", "--seed", "1"];
+    let report = json(&[&layers[..], &packets, &["--source", "monte-carlo"]].concat());
     let folder = tempfile::tempdir().expect("a folder");
-    let words = [&["simulate", "--json"], &run_with(&["--photons", "10240", "--seed", "1"])[..]].concat();
+    let words = [&["simulate", "--json"], &layers[..], &packets].concat();
     let simulated: Value =
         serde_json::from_str(&stdout(&run(folder.path(), &words))).expect("one JSON object");
     // Per light that entered; the same packets. What the profile may miss without a warning is a thousandth.

@@ -1,5 +1,7 @@
 //! Rings around the beam: even where light leaves near it, and growing outwards, where little is left and nothing is fine.
 
+use super::lanes::{LANES, Lanes, bins, indices, splat};
+
 /// Edges of rings, from the beam outwards.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rings {
@@ -67,12 +69,27 @@ impl Rings {
     }
 
     /// The ring at this radius, [`Rings::count`] beyond the last.
-    #[inline]
     pub(super) fn at(&self, r_mm: f64) -> usize {
         let place = r_mm * self.per_mm;
-        if place < self.even as f64 {
-            return place as usize;
+        if place < self.even as f64 { place as usize } else { self.at_far(r_mm) }
+    }
+
+    /// The rings at eight radii.
+    #[inline(always)]
+    pub(super) fn at_all(&self, r_mm: Lanes) -> [usize; LANES] {
+        let mut rings = indices(bins(r_mm * splat(self.per_mm), splat(self.even as f64)));
+        if self.count() > self.even {
+            for (ring, r_mm) in rings.iter_mut().zip(r_mm.to_array()) {
+                if *ring == self.even {
+                    *ring = self.at_far(r_mm);
+                }
+            }
         }
+        rings
+    }
+
+    /// The ring at a radius beyond the even ones.
+    fn at_far(&self, r_mm: f64) -> usize {
         self.even + self.edges_mm[self.even + 1..].partition_point(|&edge_mm| edge_mm <= r_mm)
     }
 }
@@ -88,6 +105,10 @@ mod tests {
         assert_eq!(rings.edges_mm(), [0.0, 0.5, 1.0, 2.0, 4.0]);
         let of = [0.0, 0.499, 0.5, 1.5, 2.0, 3.999, 4.0, f64::INFINITY].map(|r_mm| rings.at(r_mm));
         assert_eq!(of, [0, 0, 1, 2, 3, 3, 4, 4]);
+        let radii_mm = [0.0, 0.499, 0.5, 1.5, 2.0, 3.999, 4.0, f64::INFINITY];
+        assert_eq!(rings.at_all(Lanes::new(radii_mm)), of);
+        let even = Rings::even(0.5, 2).unwrap();
+        assert_eq!(even.at_all(Lanes::new(radii_mm)), radii_mm.map(|r_mm| even.at(r_mm)));
         assert_eq!(Rings::even(0.5, 3).unwrap().edges_mm(), [0.0, 0.5, 1.0, 1.5]);
         assert!(Rings::new(0.5, 2, 1.0, 3.0).unwrap_err().to_string().starts_with("growth must be"));
     }

@@ -146,9 +146,9 @@ impl Record for Counter {
         let weight = exits.weight.to_array();
         let half = self.grid.rings.count() + 1;
         let side = indices(exits.downwards & splat(half as f64));
-        let radii_mm = exits.r2_mm2.sqrt().to_array();
-        for ((r_mm, side), weight) in radii_mm.into_iter().zip(side).zip(weight) {
-            self.exits_by_radius[side + self.grid.rings.at(r_mm)] += weight;
+        let rings = self.grid.rings.at_all(exits.r2_mm2.sqrt());
+        for ((ring, side), weight) in rings.into_iter().zip(side).zip(weight) {
+            self.exits_by_radius[side + ring] += weight;
         }
         if self.grid.cosine_bins > 0 {
             let cosines = splat(self.grid.cosine_bins as f64);

@@ -79,13 +79,19 @@ impl Rings {
     pub(super) fn at_all(&self, r_mm: Lanes) -> [usize; LANES] {
         let mut rings = indices(bins(r_mm * splat(self.per_mm), splat(self.even as f64)));
         if self.count() > self.even {
-            for (ring, r_mm) in rings.iter_mut().zip(r_mm.to_array()) {
-                if *ring == self.even {
-                    *ring = self.at_far(r_mm);
-                }
-            }
+            self.find_far(&mut rings, r_mm);
         }
         rings
+    }
+
+    /// Out of the loop that most radii go through.
+    #[inline(never)]
+    fn find_far(&self, rings: &mut [usize; LANES], r_mm: Lanes) {
+        for (ring, r_mm) in rings.iter_mut().zip(r_mm.to_array()) {
+            if *ring == self.even {
+                *ring = self.at_far(r_mm);
+            }
+        }
     }
 
     /// The ring at a radius beyond the even ones.

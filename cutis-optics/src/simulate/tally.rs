@@ -1,6 +1,6 @@
 //! What is counted of a batch of packets.
 
-use super::lanes::{Lanes, bins, indices, splat};
+use super::lanes::{LANES, Lanes, bins, indices, splat};
 use super::packets::Packets;
 use super::rings::Rings;
 use super::walk::{Exits, Record};
@@ -144,11 +144,11 @@ impl Record for Counter {
     #[inline(always)]
     fn leave(&mut self, exits: &Exits) {
         let weight = exits.weight.to_array();
-        let half = self.grid.rings.count() + 1;
-        let side = indices(exits.downwards & splat(half as f64));
-        let rings = self.grid.rings.at_all(exits.r2_mm2.sqrt());
-        for ((ring, side), weight) in rings.into_iter().zip(side).zip(weight) {
-            self.exits_by_radius[side + ring] += weight;
+        let half = splat((self.grid.rings.count() + 1) as f64);
+        let ring = self.grid.rings.at_all(exits.r2_mm2.sqrt());
+        let side = indices(exits.downwards & half);
+        for lane in 0..LANES {
+            self.exits_by_radius[side[lane] + ring[lane]] += weight[lane];
         }
         if self.grid.cosine_bins > 0 {
             let cosines = splat(self.grid.cosine_bins as f64);

@@ -12,6 +12,7 @@ pub mod sampling;
 pub mod settings;
 pub mod specular_brdf;
 pub mod technique;
+pub mod transport;
 
 mod renderer;
 

@@ -6,6 +6,8 @@ pub trait Progress: Sync {
     fn begin(&self, pass: &str, steps: u64);
     /// Some steps of the current pass are done.
     fn advance(&self, steps: u64);
+    /// How good the current pass is by now, in words.
+    fn note(&self, _words: &str) {}
 }
 
 /// Tells nobody.

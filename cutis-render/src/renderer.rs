@@ -1,6 +1,6 @@
 //! The public act: scene and settings in, frame out.
 
-use crate::technique::texture_space;
+use crate::technique::{texture_space, truth};
 use crate::{Frame, Progress, Settings, TechniqueName};
 use cutis_scene::Scene;
 
@@ -19,6 +19,20 @@ pub enum RenderError {
         range: &'static str,
         /// What it is.
         value: String,
+    },
+    /// The state of an earlier run does not fit, or cannot be kept.
+    #[error("{reason}")]
+    Checkpoint {
+        /// What is wrong, with the file's name.
+        reason: String,
+    },
+    /// A body has no inside.
+    #[error("object '{object}': {reason}")]
+    BadBody {
+        /// Name of the object.
+        object: String,
+        /// What is wrong with it, and what helps.
+        reason: String,
     },
     /// A material cannot be turned into a kernel.
     #[error("material '{material}': {reason}")]
@@ -75,6 +89,7 @@ impl Renderer for CpuRenderer {
         }
         match settings.technique {
             TechniqueName::TextureSpace => texture_space::render(scene, settings, progress),
+            TechniqueName::Truth => truth::render(scene, settings, progress),
         }
     }
 }

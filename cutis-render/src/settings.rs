@@ -1,6 +1,7 @@
 //! How a scene is to be drawn.
 
 use crate::RenderError;
+use crate::film::Checkpoint;
 use std::fmt;
 use std::str::FromStr;
 
@@ -15,7 +16,8 @@ pub struct Settings {
     pub width: u32,
     /// Height of the picture, pixels.
     pub height: u32,
-    /// Samples per pixel; rounded up to a square number and laid out as a jittered grid.
+    /// Samples per pixel; the technique `texture-space` rounds them up to a square number and lays them out as a jittered
+    /// grid, `truth` takes as many paths.
     pub samples_per_pixel: u32,
     /// Width and height of the texture that holds the irradiance of the largest object, texels.
     pub irradiance_size: u32,
@@ -27,6 +29,13 @@ pub struct Settings {
     pub ambient_samples: u32,
     /// Whether to measure what the diffusion did to energy and seams.
     pub diffusion_report: bool,
+    /// Noise at which the technique `truth` stops before all samples are taken: root mean squared standard error over mean
+    /// radiance.
+    pub target_error: Option<f64>,
+    /// Whether the technique `truth` caps the holes of open bodies instead of refusing them.
+    pub close_holes: bool,
+    /// Where the technique `truth` keeps its state and goes on from it.
+    pub checkpoint: Option<Checkpoint>,
     /// Seed of every random choice: the same seed and scene give the same bits.
     pub seed: u64,
     /// Layers wanted beside the picture.
@@ -48,6 +57,9 @@ impl Default for Settings {
             shadow_samples: 4,
             ambient_samples: 6,
             diffusion_report: false,
+            target_error: None,
+            close_holes: false,
+            checkpoint: None,
             seed: 1,
             aovs: Vec::new(),
             aov_space: AovSpace::Picture,
@@ -70,11 +82,19 @@ impl Settings {
         };
         in_range("width", self.width, 1, MAX_SIZE, "1 to 16384 pixels")?;
         in_range("height", self.height, 1, MAX_SIZE, "1 to 16384 pixels")?;
-        in_range("samples per pixel", self.samples_per_pixel, 1, 4096, "1 to 4096")?;
+        in_range("samples per pixel", self.samples_per_pixel, 1, 1_048_576, "1 to 1048576")?;
         in_range("irradiance size", self.irradiance_size, 16, MAX_SIZE, "16 to 16384 texels")?;
         in_range("gaussians", self.gaussians as u32, 1, 16, "1 to 16")?;
         in_range("shadow samples", self.shadow_samples, 1, 1024, "1 to 1024")?;
-        in_range("ambient samples", self.ambient_samples, 1, 4096, "1 to 4096")
+        in_range("ambient samples", self.ambient_samples, 1, 4096, "1 to 4096")?;
+        match self.target_error {
+            Some(error) if !(error > 0.0 && error < 1.0) => Err(RenderError::BadSetting {
+                name: "target error",
+                range: "above 0 and below 1",
+                value: error.to_string(),
+            }),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -83,6 +103,8 @@ impl Settings {
 pub enum TechniqueName {
     /// Sums of Gaussians in texture space with translucent shadows (d'Eon, Luebke & Enderton 2007).
     TextureSpace,
+    /// Monte Carlo light transport in the real geometry.
+    Truth,
 }
 
 /// Operators that spread irradiance over the surface.
@@ -122,6 +144,12 @@ pub enum Aov {
     Specular,
     /// Radiance that came through the body.
     Transmission,
+    /// Radiance of light that has been inside the body: all but the specular part.
+    Diffuse,
+    /// Light that leaves a square metre of skin after having been inside, W/m² (rgb).
+    Exitance,
+    /// Standard error of the picture's radiance, where it is estimated by chance.
+    StandardError,
     /// Number of the UV chart.
     Charts,
 }
@@ -134,7 +162,17 @@ impl Aov {
     pub fn all() -> Vec<Aov> {
         let blurs = (0..BLUR_LAYERS).map(Aov::Blur);
         let before = [Aov::Irradiance, Aov::Stretch];
-        let after = [Aov::Thickness, Aov::Normal, Aov::Albedo, Aov::Specular, Aov::Transmission, Aov::Charts];
+        let after = [
+            Aov::Thickness,
+            Aov::Normal,
+            Aov::Albedo,
+            Aov::Specular,
+            Aov::Transmission,
+            Aov::Diffuse,
+            Aov::Exitance,
+            Aov::StandardError,
+            Aov::Charts,
+        ];
         before.into_iter().chain(blurs).chain(after).collect()
     }
 }
@@ -164,6 +202,9 @@ impl fmt::Display for Aov {
             Aov::Albedo => f.write_str("albedo"),
             Aov::Specular => f.write_str("specular"),
             Aov::Transmission => f.write_str("transmission"),
+            Aov::Diffuse => f.write_str("diffuse"),
+            Aov::Exitance => f.write_str("exitance"),
+            Aov::StandardError => f.write_str("standard-error"),
             Aov::Charts => f.write_str("charts"),
         }
     }
@@ -184,6 +225,7 @@ impl fmt::Display for TechniqueName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             TechniqueName::TextureSpace => f.write_str("texture-space"),
+            TechniqueName::Truth => f.write_str("truth"),
         }
     }
 }

@@ -7,6 +7,7 @@
 pub mod bvh;
 pub mod camera;
 pub mod charts;
+pub mod closing;
 pub mod environment;
 pub mod error;
 pub mod head;
@@ -15,6 +16,7 @@ pub mod material;
 pub mod mesh;
 pub mod object;
 pub mod read;
+pub mod solids;
 pub mod studio;
 pub mod tangents;
 pub mod texture;

@@ -15,7 +15,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Techniques that can be chosen.
-pub const TECHNIQUES: [TechniqueName; 1] = [TechniqueName::TextureSpace];
+pub const TECHNIQUES: [TechniqueName; 2] = [TechniqueName::TextureSpace, TechniqueName::Truth];
 
 /// Diffusion operators that can be chosen.
 pub const DIFFUSIONS: [Diffusion; 2] = [Diffusion::None, Diffusion::Separable];
@@ -71,9 +71,20 @@ pub struct RenderArgs {
     /// Width and height of the picture [pixels, 1x1 to 16384x16384]
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value_t = default_size())]
     pub size: String,
-    /// Samples per pixel, rounded up to a square number [1 to 4096]
+    /// Samples per pixel; texture-space rounds them up to a square number [1 to 1048576]
     #[arg(long, value_name = "N", default_value_t = Settings::default().samples_per_pixel)]
     pub samples: u32,
+    /// Noise at which truth stops before all samples are taken: root mean squared standard error over mean radiance
+    /// [fraction, above 0, below 1, default: none]
+    #[arg(long, value_name = "FRACTION", allow_negative_numbers = true)]
+    pub target_error: Option<f64>,
+    /// Go on from OUTPUT.paths, if it is there, and keep the state of truth in it three times a minute; more samples
+    /// may be asked for later
+    #[arg(long)]
+    pub resume: bool,
+    /// Cap the holes of open bodies, for truth, which needs closed ones
+    #[arg(long)]
+    pub close_holes: bool,
     /// Seed of every random choice: the same seed gives the same bytes [0 to 2^64 - 1]
     #[arg(long, value_name = "N", default_value_t = Settings::default().seed)]
     pub seed: u64,

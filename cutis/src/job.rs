@@ -2,7 +2,7 @@
 
 use crate::cli::{AOV_SPACES, DIFFUSIONS, RenderArgs, TECHNIQUES};
 use crate::scene_source::SceneSource;
-use cutis_render::film::{Bloom, Film, Format, check_output, layer_path};
+use cutis_render::film::{Bloom, Checkpoint, Film, Format, check_output, layer_path};
 use cutis_render::{Aov, Settings};
 use cutis_scene::ReadOptions;
 use cutis_scene::head::HeadDetail;
@@ -79,11 +79,21 @@ fn settings(args: &RenderArgs) -> Result<Settings> {
         diffusion_report: args.diffusion_report,
         ambient_samples: args.ambient_samples,
         seed: args.seed,
+        target_error: args.target_error,
+        close_holes: args.close_holes,
+        checkpoint: args.resume.then(|| checkpoint_beside(&args.output)),
         aovs,
         aov_space: named("--aov-space", &args.aov_space, AOV_SPACES.map(|(n, s)| (n.to_owned(), s)))?,
     };
     settings.check().map_err(refused)?;
     Ok(settings)
+}
+
+/// Where the state of a long rendering is kept.
+fn checkpoint_beside(output: &Path) -> Checkpoint {
+    let mut name = output.as_os_str().to_owned();
+    name.push(".paths");
+    Checkpoint { path: name.into() }
 }
 
 fn film(args: &RenderArgs) -> Result<Film> {

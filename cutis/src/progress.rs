@@ -12,8 +12,9 @@ impl Bar {
     /// A bar on stderr, invisible when that is no terminal or when lines are wanted.
     pub fn new(verbose: u8) -> Self {
         let target = if verbose == 0 { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
-        let style = ProgressStyle::with_template("{msg:16} {bar:40} {percent:>3} % {elapsed}")
-            .expect("the template is well formed");
+        let style =
+            ProgressStyle::with_template("{msg:16} {bar:40} {percent:>3} % {elapsed}, {eta} left {prefix}")
+                .expect("the template is well formed");
         Self { bar: ProgressBar::with_draw_target(Some(0), target).with_style(style) }
     }
 
@@ -29,9 +30,14 @@ impl Progress for Bar {
         self.bar.reset();
         self.bar.set_length(steps);
         self.bar.set_message(pass.to_owned());
+        self.bar.set_prefix("");
     }
 
     fn advance(&self, steps: u64) {
         self.bar.inc(steps);
+    }
+
+    fn note(&self, words: &str) {
+        self.bar.set_prefix(words.to_owned());
     }
 }

@@ -8,6 +8,11 @@
 
 use super::lanes::{Lanes, splat};
 
+/// 1 - mu of one scattering event for mean cosine `g` and a uniform `unit` in (0, 1).
+pub fn scattered_one_minus_cos(g: f64, unit: f64) -> f64 {
+    sample_one_minus_cos(splat(g), splat(unit)).to_array()[0]
+}
+
 /// 1 - mu for uniform `unit` in (0, 1).
 #[inline(always)]
 pub(super) fn sample_one_minus_cos(g: Lanes, unit: Lanes) -> Lanes {
@@ -26,9 +31,7 @@ mod tests {
     use crate::simulate::random::{Random, unit};
     use crate::simulate::tests::chi_square_is_plausible;
 
-    fn one_minus_cos(g: f64, unit: f64) -> f64 {
-        sample_one_minus_cos(splat(g), splat(unit)).to_array()[0]
-    }
+    use super::scattered_one_minus_cos as one_minus_cos;
 
     /// Share of the light with a cosine below `mu`, the integral of the phase function.
     fn below(g: f64, mu: f64) -> f64 {

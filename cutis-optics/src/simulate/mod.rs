@@ -25,6 +25,7 @@ mod walk;
 
 pub use estimate::{Estimate, Estimates};
 pub use fresnel::fresnel_reflectance;
+pub use henyey_greenstein::scattered_one_minus_cos;
 pub use layers::{Layer, LayerError, LayeredSlab};
 pub use path_counter::PathCounter;
 pub use path_lengths::{Absorbed, PathLengths};

@@ -9,6 +9,7 @@
 //! itself, divided by its coverage and multiplied again afterwards, so that edges keep their tone.
 
 mod bloom;
+mod checkpoint;
 mod error;
 mod exr;
 mod format;
@@ -20,6 +21,7 @@ mod tone_map;
 mod write;
 
 pub use bloom::Bloom;
+pub use checkpoint::{Checkpoint, CheckpointError};
 pub use error::FilmError;
 pub use format::{Format, known_extensions};
 pub use srgb::linear_to_srgb;

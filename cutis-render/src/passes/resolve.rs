@@ -39,6 +39,8 @@ pub struct Sample {
 
 /// The parts that make up the radiance at a point.
 struct Parts {
+    /// Before any eye looks, W/m².
+    exitance: Vec3,
     diffuse: Vec3,
     transmission: Vec3,
     specular: Vec3,
@@ -110,9 +112,11 @@ impl Resolve<'_> {
         let film = material.film_outwards(uv);
         let cos_eye = place.normal.dot(dir_to_eye);
         let leaving = film * (place.maps.rho_dt.at(cos_eye, shine.roughness, shine.rho_s) / PI);
+        let transmitted = place.transmission.at(place.maps, uv, place.chart);
         Parts {
+            exitance: (local + transmitted) * film,
             diffuse: local * leaving,
-            transmission: place.transmission.at(place.maps, uv, place.chart) * leaving,
+            transmission: transmitted * leaving,
             specular: self.specular(place, &shine),
         }
     }
@@ -148,6 +152,10 @@ impl Resolve<'_> {
             Aov::Albedo => place.object.material.albedo.at(uv).extend(1.0),
             Aov::Specular => parts.specular.extend(1.0),
             Aov::Transmission => parts.transmission.extend(1.0),
+            Aov::Diffuse => (parts.diffuse + parts.transmission).extend(1.0),
+            Aov::Exitance => parts.exitance.extend(1.0),
+            // Nothing here is left to chance.
+            Aov::StandardError => Vec4::ZERO,
             Aov::Charts => Vec4::splat(place.chart as f32),
         }
     }

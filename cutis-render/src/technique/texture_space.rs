@@ -136,7 +136,13 @@ impl<'a> LitScene<'a> {
                 let number = |&c: &u32| Vec4::splat(if c == u32::MAX { -1.0 } else { c as f32 });
                 (maps.atlas.size, maps.atlas.charts.chart.iter().map(number).collect())
             }
-            Aov::Normal | Aov::Albedo | Aov::Specular | Aov::Transmission => return None,
+            Aov::Normal
+            | Aov::Albedo
+            | Aov::Specular
+            | Aov::Transmission
+            | Aov::Diffuse
+            | Aov::Exitance
+            | Aov::StandardError => return None,
         };
         Some(Layer {
             name: aov.to_string(),

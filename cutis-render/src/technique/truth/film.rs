@@ -1,0 +1,142 @@
+//! What the paths of every pixel have brought.
+
+use crate::frame::{Frame, Layer};
+use crate::sampling::{r2_point, random2};
+use crate::settings::{Aov, Settings};
+use crate::transport::estimate::Estimate;
+use crate::transport::path::Transport;
+use crate::transport::random::Random;
+use cutis_scene::{CameraRays, Scene};
+use glam::{DVec3, Vec2, Vec4};
+use rayon::prelude::*;
+
+/// Stream of random numbers that shifts the samples of a pixel.
+const STREAM: u32 = 0x77;
+
+/// Sums of what came along the paths, pixel by pixel.
+pub struct Film {
+    rays: CameraRays,
+    eye_mm: DVec3,
+    width: u32,
+    height: u32,
+    seed: u64,
+    samples: u64,
+    pixels: Vec<Pixel>,
+}
+
+/// Sums over the samples of a pixel.
+#[derive(Debug, Clone, Copy, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct Pixel {
+    diffuse: DVec3,
+    specular: DVec3,
+    all: Estimate,
+    covered: u64,
+    events: u64,
+}
+
+impl Film {
+    /// Nothing seen yet.
+    pub fn new(scene: &Scene, settings: &Settings) -> Self {
+        let Settings { width, height, seed, .. } = *settings;
+        Self {
+            rays: scene.camera.rays(width as f32 / height as f32),
+            eye_mm: scene.camera.position_mm.as_dvec3(),
+            width,
+            height,
+            seed,
+            samples: 0,
+            pixels: vec![Pixel::default(); width as usize * height as usize],
+        }
+    }
+
+    /// Adds so many samples to every pixel.
+    pub fn expose(&mut self, transport: &Transport, count: u64) {
+        let (first, width) = (self.samples, self.width as usize);
+        let mut pixels = std::mem::take(&mut self.pixels);
+        pixels.par_iter_mut().with_min_len(16).enumerate().for_each(|(i, pixel)| {
+            for sample in first..first + count {
+                let mut random = Random::new(self.seed, i as u64, sample);
+                let dir = self.dir((i % width) as u32, (i / width) as u32, sample);
+                let came = transport.radiance(self.eye_mm, dir, &mut random);
+                pixel.diffuse += came.diffuse;
+                pixel.specular += came.specular;
+                pixel.all.add(came.diffuse + came.specular);
+                pixel.covered += u64::from(came.covered);
+                pixel.events += came.events;
+            }
+        });
+        self.pixels = pixels;
+        self.samples += count;
+    }
+
+    /// Direction of a sample: an even sequence over the pixel, shifted by chance.
+    fn dir(&self, x: u32, y: u32, sample: u64) -> DVec3 {
+        let within = r2_point(sample as u32, random2(x, y, STREAM, self.seed));
+        let place =
+            (Vec2::new(x as f32, y as f32) + within) / Vec2::new(self.width as f32, self.height as f32);
+        self.rays.dir_through(Vec2::new(2.0 * place.x - 1.0, 1.0 - 2.0 * place.y)).as_dvec3().normalize()
+    }
+
+    /// Root of the mean squared standard error over the mean radiance, over the pixels that see a body.
+    pub fn noise(&self) -> f64 {
+        let covered = self.pixels.iter().filter(|pixel| pixel.covered > 0);
+        let (mut squares, mut mean, mut count) = (0.0, 0.0, 0.0);
+        for pixel in covered {
+            squares += pixel.all.standard_error().length_squared() / 3.0;
+            mean += pixel.all.mean().element_sum() / 3.0;
+            count += 1.0;
+        }
+        if mean > 0.0 { (squares / count).sqrt() / (mean / count) } else { 0.0 }
+    }
+
+    /// Samples of every pixel.
+    pub fn samples(&self) -> u64 {
+        self.samples
+    }
+
+    /// The sums, to be kept.
+    pub fn state(&self) -> &[u8] {
+        bytemuck::cast_slice(&self.pixels)
+    }
+
+    /// Goes on from sums that were kept, of the same size.
+    pub fn restore(&mut self, samples: u64, state: &[u8]) {
+        bytemuck::cast_slice_mut(&mut self.pixels).copy_from_slice(state);
+        self.samples = samples;
+    }
+
+    /// Steps of all paths inside bodies.
+    pub fn events(&self) -> u64 {
+        self.pixels.iter().map(|pixel| pixel.events).sum()
+    }
+
+    /// The picture by now, with the layers asked for.
+    pub fn frame(&self, settings: &Settings) -> Frame {
+        let samples = self.samples as f64;
+        let (width, height) = (self.width, self.height);
+        let of = |value: DVec3, pixel: &Pixel| value.as_vec3().extend(pixel.covered as f32 / samples as f32);
+        let layer = |&aov: &Aov| Layer {
+            name: aov.to_string(),
+            width,
+            height,
+            channels: aov.channels(),
+            pixels: self
+                .pixels
+                .iter()
+                .map(|pixel| match aov {
+                    Aov::Diffuse => of(pixel.diffuse / samples, pixel),
+                    Aov::Specular => of(pixel.specular / samples, pixel),
+                    _ => of(pixel.all.standard_error(), pixel),
+                })
+                .collect::<Vec<Vec4>>(),
+        };
+        Frame {
+            width,
+            height,
+            pixels: self.pixels.iter().map(|pixel| of(pixel.all.mean(), pixel)).collect(),
+            layers: settings.aovs.iter().map(layer).collect(),
+            ..Frame::default()
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! The truth: light transport in the real geometry by Monte Carlo, with a standard error for every pixel.
+//!
+//! What it solves is in [`crate::transport`]. Samples come in passes over the whole picture, so that it may stop when the
+//! noise is low enough, and go on another day.
+
+mod exitance_map;
+mod film;
+mod key;
+
+use crate::film::Checkpoint;
+use crate::frame::{Frame, PassTime};
+use crate::settings::{Aov, AovSpace, Settings};
+use crate::transport::path::Transport;
+use crate::{Progress, RenderError};
+use cutis_scene::Scene;
+use cutis_scene::closing::{check_closed, close_holes};
+pub use exitance_map::{ExitanceMap, Start};
+use film::Film;
+use std::time::{Duration, Instant};
+
+/// Pixels times samples of a pass: about a second.
+const PASS: u64 = 1 << 20;
+/// Noise is only believed after so many samples per pixel.
+const SAMPLES_MIN: u64 = 16;
+/// Time between two states kept.
+const KEEP_EVERY: Duration = Duration::from_secs(20);
+
+/// Draws a scene.
+///
+/// # Errors
+/// If a body is open, a material has no medium, a layer is not known here, a light could never be seen, or the checkpoint
+/// belongs to something else or cannot be kept.
+pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Result<Frame, RenderError> {
+    check_layers(settings)?;
+    let start = Instant::now();
+    let scene = &closed(scene, settings.close_holes)?;
+    let transport = Transport::new(scene, settings.seed)?;
+    check_lights(&transport)?;
+    let mut passes = vec![PassTime { name: "bodies".to_owned(), time: start.elapsed() }];
+    let start = Instant::now();
+    let film = expose(&transport, settings, progress)?;
+    let mut frame = film.frame(settings);
+    passes.push(PassTime { name: "paths".to_owned(), time: start.elapsed() });
+    tracing::info!("{:.3e} steps inside bodies, noise {:.3} %", film.events() as f64, 100.0 * film.noise());
+    if settings.aov_space == AovSpace::Texture {
+        let start = Instant::now();
+        let map = ExitanceMap::new(&transport, settings, progress);
+        frame.layers = settings.aovs.iter().filter_map(|&aov| map.layer(aov)).collect();
+        passes.push(PassTime { name: "exitance".to_owned(), time: start.elapsed() });
+    }
+    frame.passes = passes;
+    Ok(frame)
+}
+
+/// Takes samples until there are enough, or the noise is low enough.
+fn expose(transport: &Transport, settings: &Settings, progress: &dyn Progress) -> Result<Film, RenderError> {
+    let (key, wanted) = (key::of(transport.scene, settings), u64::from(settings.samples_per_pixel));
+    let mut film = Film::new(transport.scene, settings);
+    if let Some(checkpoint) = &settings.checkpoint {
+        if let Some((samples, state)) = checkpoint.load(key, film.state().len()).map_err(kept)? {
+            film.restore(samples, &state);
+        }
+    }
+    let step = (PASS / (u64::from(settings.width) * u64::from(settings.height))).clamp(1, 16);
+    let mut last_kept = Instant::now();
+    progress.begin("paths", wanted);
+    progress.advance(film.samples().min(wanted));
+    while film.samples() < wanted {
+        let count = step.min(wanted - film.samples());
+        film.expose(transport, count);
+        progress.advance(count);
+        let noise = film.noise();
+        progress.note(&format!("noise {:.2} %", 100.0 * noise));
+        if film.samples() >= SAMPLES_MIN && settings.target_error.is_some_and(|target| noise <= target) {
+            break;
+        }
+        if last_kept.elapsed() > KEEP_EVERY {
+            keep(settings.checkpoint.as_ref(), key, &film)?;
+            last_kept = Instant::now();
+        }
+    }
+    keep(settings.checkpoint.as_ref(), key, &film)?;
+    Ok(film)
+}
+
+fn keep(checkpoint: Option<&Checkpoint>, key: u64, film: &Film) -> Result<(), RenderError> {
+    checkpoint.map_or(Ok(()), |checkpoint| checkpoint.save(key, film.samples(), film.state()).map_err(kept))
+}
+
+fn kept(error: crate::film::CheckpointError) -> RenderError {
+    RenderError::Checkpoint { reason: error.to_string() }
+}
+
+fn check_layers(settings: &Settings) -> Result<(), RenderError> {
+    let (known, range): (&[Aov], _) = match settings.aov_space {
+        AovSpace::Picture => (
+            &[Aov::Diffuse, Aov::Specular, Aov::StandardError],
+            "diffuse, specular or standard-error, as the camera sees them",
+        ),
+        AovSpace::Texture => {
+            (&[Aov::Exitance, Aov::StandardError], "exitance or standard-error (of it), as textures")
+        }
+    };
+    match settings.aovs.iter().find(|aov| !known.contains(aov)) {
+        Some(aov) => Err(RenderError::BadSetting {
+            name: "a layer of the technique truth",
+            range,
+            value: aov.to_string(),
+        }),
+        None => Ok(()),
+    }
+}
+
+/// The scene with closed bodies only.
+///
+/// # Errors
+/// If one is open and is to stay so, or can not be closed.
+pub fn closed(scene: &Scene, close: bool) -> Result<Scene, RenderError> {
+    let mut scene = scene.clone();
+    for object in &mut scene.objects {
+        let bad = |reason: String| RenderError::BadBody { object: object.name.clone(), reason };
+        if close {
+            *object = close_holes(object).map_err(|e| bad(e.to_string()))?;
+        } else {
+            check_closed(&object.mesh).map_err(|e| {
+                bad(format!("{e}; a simulation needs a closed body: --close-holes caps its holes"))
+            })?;
+        }
+    }
+    Ok(scene)
+}
+
+/// Refuses lights that no path from the eye could ever meet.
+fn check_lights(transport: &Transport) -> Result<(), RenderError> {
+    if !transport.emitters.has_sharp_light() {
+        return Ok(());
+    }
+    let sharp = |material: &cutis_scene::Material| {
+        let smooth = material.roughness.texture.is_none() && material.roughness.offset <= 0.0;
+        smooth
+            || crate::transport::tissue::Tissue::of_material(material)
+                .is_ok_and(|t| t.refractive_index == 1.0)
+    };
+    match transport.scene.objects.iter().find(|object| sharp(&object.material)) {
+        Some(object) => Err(RenderError::BadBody {
+            object: object.name.clone(),
+            reason: "light from a point falls on a surface too smooth for the eye's paths to find it: give the light a \
+                     radius, or the surface a roughness"
+                .to_owned(),
+        }),
+        None => Ok(()),
+    }
+}

@@ -13,8 +13,8 @@ pub fn write_all(files: &[(&Path, &[u8])]) -> Result<()> {
         .zip(files)
         .try_for_each(|((beside, _), (path, bytes))| fill(beside, bytes).map_err(refused(path)));
     let written = filled.and_then(|()| {
-        let pairs = staged.iter().zip(files);
-        pairs.map(|((beside, place), (path, _))| fs::rename(beside, place).map_err(refused(path))).collect()
+        let mut pairs = staged.iter().zip(files);
+        pairs.try_for_each(|((beside, place), (path, _))| fs::rename(beside, place).map_err(refused(path)))
     });
     if written.is_err() {
         // Nobody is left to tell; what stays behind is a hidden file that says it is partial.

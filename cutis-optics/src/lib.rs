@@ -47,6 +47,7 @@ mod single_scattering;
 mod source;
 mod stack;
 pub mod translate;
+mod trust;
 mod wide_beam;
 
 pub use better_dipole::BetterDipole;
@@ -68,7 +69,8 @@ pub use rgb_gaussian_sum::RgbGaussianSum;
 pub use ring_profile::RingProfile;
 pub use single_scattering::SingleScattering;
 pub use source::{BoxedProfile, ProfileSource, SourceError};
-pub use stack::{Stack, StackError, TissueLayer};
+pub use stack::{Stack, StackError, StackTransmittance, TissueLayer};
+pub use trust::Trust;
 pub use wide_beam::WideBeam;
 
 #[cfg(test)]

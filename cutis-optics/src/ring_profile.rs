@@ -34,10 +34,19 @@ impl RingProfile {
 
     /// Reflectance of a simulation with absorption.
     pub fn from_estimates(estimates: &Estimates) -> Self {
+        Self::per_entered(estimates, &estimates.reflectance_by_ring())
+    }
+
+    /// Transmittance of a simulation with absorption.
+    pub fn transmittance_from_estimates(estimates: &Estimates) -> Self {
+        Self::per_entered(estimates, &estimates.transmittance_by_ring())
+    }
+
+    fn per_entered(estimates: &Estimates, by_ring: &[Estimate]) -> Self {
         let entered = 1.0 - estimates.specular_reflectance();
-        let per_entered =
-            |e: Estimate| Estimate { value: e.value / entered, standard_error: e.standard_error / entered };
-        let shares: Vec<Estimate> = estimates.reflectance_by_ring().into_iter().map(per_entered).collect();
+        let share =
+            |e: &Estimate| Estimate { value: e.value / entered, standard_error: e.standard_error / entered };
+        let shares: Vec<Estimate> = by_ring.iter().map(share).collect();
         Self::from_shares(estimates.ring_edges_mm().to_vec(), &shares)
     }
 

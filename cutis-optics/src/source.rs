@@ -125,7 +125,7 @@ impl ProfileSource {
 }
 
 /// The medium, if the layers are one half-space.
-fn half_space(layers: &[TissueLayer]) -> Option<&Medium> {
+pub(crate) fn half_space(layers: &[TissueLayer]) -> Option<&Medium> {
     match layers {
         [layer] if layer.thickness_mm == f64::INFINITY => Some(&layer.medium),
         _ => None,

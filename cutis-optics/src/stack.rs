@@ -156,6 +156,27 @@ impl Stack {
     }
 }
 
+/// What comes out below a stack, as a profile.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StackTransmittance(Stack);
+
+impl Stack {
+    /// The transmittance as a profile; none where the last layer is endless.
+    pub fn into_transmittance(self) -> Option<StackTransmittance> {
+        self.bottom.is_none().then_some(StackTransmittance(self))
+    }
+}
+
+impl Profile for StackTransmittance {
+    fn spectrum(&self, k_per_mm: f64) -> f64 {
+        self.0.transmittance_spectrum(k_per_mm)
+    }
+
+    fn at_mm(&self, r_mm: f64) -> f64 {
+        self.0.transmittance_at_mm(r_mm)
+    }
+}
+
 /// The reflectance.
 impl Profile for Stack {
     fn spectrum(&self, k_per_mm: f64) -> f64 {

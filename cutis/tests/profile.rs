@@ -230,6 +230,100 @@ fn formats_can_be_named_and_translations_are_reported() {
     assert!(draft.contains("KHR_materials_scatter"), "{draft}");
 }
 
+const SHEET: [&str; 2] = ["--layer", "mu_a=0.05,mu_s=4,n=1.4,d=1.5"];
+
+#[test]
+fn outputs_are_written_all_or_none() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::create_dir(folder.path().join("sub")).expect("made");
+    for [one, other] in [["k.json", "./k.json"], ["k.json", "sub/../k.json"], ["sub/k.csv", "sub/k.csv"]] {
+        let output = run(folder.path(), &["profile", "skin1", "--export", one, "--export", other]);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.contains(one) && said.contains(other) && said.contains("are one file"), "{said}");
+    }
+    // The plot is an output like any other.
+    let plot = ["profile", "skin1", "--plot", "a.svg", "--export", "a.svg", "--export-as", "json"];
+    assert!(stderr(&run(folder.path(), &plot)).contains("are one file"));
+    assert_eq!(names(folder.path()), ["sub"]);
+    // A name too long for the file system stands for any trouble with the second file.
+    let name = "x".repeat(300) + ".csv";
+    let output = run(folder.path(), &["profile", "skin1", "--export", "k.json", "--export", &name]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert_eq!(names(folder.path()), ["sub"], "neither is there");
+}
+
+#[test]
+fn layers_that_end_tell_what_comes_out_below() {
+    let report = json(&[&SHEET[..], &["--gaussians", "2"]].concat());
+    let total = number(&report["total_transmittance"]);
+    let radial = &report["radial_profile"];
+    let list = |key: &str| -> Vec<f64> { radial[key].as_array().expect(key).iter().map(number).collect() };
+    let (r, t) = (list("r_mm"), list("transmittance_per_mm2"));
+    assert_eq!((r.len(), list("reflectance_per_mm2").len()), (t.len(), t.len()));
+    // ∫ 2 pi r² T d(ln r): the light that comes out is that of the total. 64 radii over five decades at most take steps of
+    // 0.18, with which the trapezoid rule errs by far less than what lies beyond the last radius, some thousandths.
+    let step = (r[1] / r[0]).ln();
+    let sum: f64 = r.iter().zip(&t).map(|(r, t)| std::f64::consts::TAU * r * r * t * step).sum();
+    assert!((sum / total - 1.0).abs() < 0.01, "{sum} of {total}");
+    let simulated =
+        [&SHEET[..], &["--source", "monte-carlo", "--photons", "40960", "--gaussians", "2"]].concat();
+    let simulated = number(&json(&simulated)["total_transmittance"]);
+    // Diffusion against the truth where reduced albedo is 0.99 and the sheet six mean free paths thick: within a tenth.
+    assert!((total / simulated - 1.0).abs() < 0.1, "{total} against {simulated}");
+    let endless = json(&["skin1", "--channel", "r", "--gaussians", "2"]);
+    assert!(endless["total_transmittance"].is_null() && endless["radial_profile"].is_null());
+}
+
+#[test]
+fn transmittance_is_drawn_printed_and_exported() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let files = ["--plot", "a.svg", "--export", "a.csv", "--export-as", "radial-csv", "--gaussians", "2"];
+    let output = run(folder.path(), &[&["profile"], &SHEET[..], &files].concat());
+    assert!(output.status.success(), "{}", stderr(&output));
+    assert!(stdout(&output).contains("T_d 0."), "{}", stdout(&output));
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).expect("written");
+    assert!(read("a.svg").contains("all channels, transmitted"));
+    let csv = read("a.csv");
+    assert_eq!(csv.lines().next(), Some("r_mm,reflectance_per_mm2,transmittance_per_mm2"));
+    assert_eq!(csv.lines().count(), 65);
+    let files = ["--export", "b.csv", "--export-as", "radial-csv", "--gaussians", "2"];
+    assert!(run(folder.path(), &[&["profile", "skin1"], &files[..]].concat()).status.success());
+    let header = "r_mm,reflectance_r_per_mm2,reflectance_g_per_mm2,reflectance_b_per_mm2";
+    assert_eq!(read("b.csv").lines().next(), Some(header));
+}
+
+#[test]
+fn small_numbers_keep_their_digits() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let words = ["profile", "--layer", "mu_a=1e5,mu_s=1e-4,n=1.4", "--gaussians", "2", "--explain"];
+    let output = run(folder.path(), &words);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let said = stdout(&output);
+    for zeros in [" 0.000000", " 0.0000 %", " 0.0000 mm"] {
+        assert!(!said.contains(zeros), "{said}");
+    }
+}
+
+#[test]
+fn every_formula_is_judged_for_the_layers() {
+    let judged = |words: &[&str]| -> Vec<(String, bool)> {
+        let report = json(&[words, &["--gaussians", "1", "--explain"]].concat());
+        let sources = report["explanation"]["sources"].as_array().expect("a list").clone();
+        let told = |s: &Value| (s["source"].as_str().expect("a name").to_owned(), s["holds"] == true);
+        sources.iter().map(told).collect()
+    };
+    let expect = |holds: [bool; 4]| {
+        ["dipole", "better-dipole", "multipole", "beam"].map(str::to_owned).into_iter().zip(holds).collect()
+    };
+    let clear: Vec<_> = expect([true, false, true, true]);
+    assert_eq!(judged(&["marble", "--channel", "r"]), clear);
+    let dark: Vec<_> = expect([false, true, false, true]);
+    assert_eq!(judged(&["--layer", "mu_a=0.6,mu_s=0.4,n=1.4"]), dark);
+    let sheet: Vec<_> = expect([false, false, true, false]);
+    assert_eq!(judged(&SHEET), sheet);
+}
+
 #[test]
 fn every_source_and_every_method_gives_a_profile_of_its_own() {
     let total = |words: &[&str]| number(&json(words)["total_diffuse_reflectance"]);

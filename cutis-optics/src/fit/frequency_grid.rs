@@ -20,12 +20,16 @@ const LEAP: f64 = -2.0;
 const NEGLIGIBLE: f64 = 1e-11;
 /// … and this factor more, so that Gaussians narrower than the profile's own detail are seen and punished.
 const HEADROOM: f64 = 2.0;
+/// Exponent below which a Gaussian counts as 0: e^-60 of the 1 it begins with lies ten decades below rounding.
+const EXPONENT_LEAST: f64 = -60.0;
 /// Octaves searched up and down from 1/mm for the scale of a profile: 1e-18 to 1e18 per mm.
 const SCALE_OCTAVES: i32 = 60;
 
 /// Nodes in k and what each one counts.
 pub(super) struct FrequencyGrid {
     k_per_mm: Vec<f64>,
+    /// -k²/2: what a variance is multiplied by in the exponent of its Gaussian.
+    exponents_per_mm2: Vec<f64>,
     /// Square root of k² d(ln k)/dt times the step.
     root_weights: Vec<f64>,
     k_half_range_per_mm: (f64, f64),
@@ -47,7 +51,8 @@ impl FrequencyGrid {
         let k_per_mm: Vec<f64> = (0..=count).map(|i| begin_per_mm * (t(i) - (-t(i)).exp()).exp()).collect();
         let root = |(i, k): (usize, &f64)| k * (STEP * (1.0 + (-t(i)).exp())).sqrt();
         let root_weights = k_per_mm.iter().enumerate().map(root).collect();
-        Ok(Self { k_per_mm, root_weights, k_half_range_per_mm: range })
+        let exponents_per_mm2 = k_per_mm.iter().map(|k| -0.5 * k * k).collect();
+        Ok(Self { k_per_mm, exponents_per_mm2, root_weights, k_half_range_per_mm: range })
     }
 
     /// Every n-th node: the rule then misses 2 |Gamma(1 + i pi/(n h))| of ∫ k e^(-k²) dk, 2e-8 for two and 1e-3 for four.
@@ -55,6 +60,7 @@ impl FrequencyGrid {
         let chosen = |values: &[f64], scale: f64| values.iter().step_by(n).map(|v| v * scale).collect();
         Self {
             k_per_mm: chosen(&self.k_per_mm, 1.0),
+            exponents_per_mm2: chosen(&self.exponents_per_mm2, 1.0),
             root_weights: chosen(&self.root_weights, (n as f64).sqrt()),
             k_half_range_per_mm: self.k_half_range_per_mm,
         }
@@ -63,6 +69,11 @@ impl FrequencyGrid {
     /// Frequencies, growing, 1/mm.
     pub(super) fn k_per_mm(&self) -> &[f64] {
         &self.k_per_mm
+    }
+
+    /// -k²/2 for each frequency, 1/mm².
+    pub(super) fn exponents_per_mm2(&self) -> &[f64] {
+        &self.exponents_per_mm2
     }
 
     /// Number of nodes.
@@ -75,18 +86,22 @@ impl FrequencyGrid {
         self.k_half_range_per_mm
     }
 
-    /// A Gaussian of weight 1 at the nodes, times the square root of the quadrature weight.
+    /// A Gaussian of weight 1 at the nodes, times the square root of the quadrature weight; 0 where it is below rounding.
     pub(super) fn fill_gaussian(&self, variance_mm2: f64, values: &mut [f64]) {
-        let half = f64x4::splat(-0.5 * variance_mm2);
-        let lanes = |of: &[f64]| {
-            let mut four = [0.0; 4];
-            four[..of.len()].copy_from_slice(of);
-            f64x4::new(four)
-        };
-        let nodes = self.k_per_mm.chunks(4).zip(self.root_weights.chunks(4));
-        for (place, (k, weight)) in values.chunks_mut(4).zip(nodes) {
-            let (k, weight) = (lanes(k), lanes(weight));
-            place.copy_from_slice(&(weight * (half * k * k).exp()).to_array()[..place.len()]);
+        const LANES: usize = 4;
+        let seen = self.exponents_per_mm2.partition_point(|e| variance_mm2 * e > EXPONENT_LEAST);
+        let whole = seen.next_multiple_of(LANES).min(self.len() - self.len() % LANES);
+        let (lanes, rest) = values.split_at_mut(whole);
+        let nodes = self.exponents_per_mm2.chunks_exact(LANES).zip(self.root_weights.chunks_exact(LANES));
+        for (place, (e, weight)) in lanes.chunks_exact_mut(LANES).zip(nodes) {
+            let of = |four: &[f64]| f64x4::new([four[0], four[1], four[2], four[3]]);
+            let four = of(weight) * (f64x4::splat(variance_mm2) * of(e)).exp();
+            place.copy_from_slice(&four.to_array());
+        }
+        let nodes = self.exponents_per_mm2[whole..].iter().zip(&self.root_weights[whole..]);
+        for (place, (e, weight)) in rest.iter_mut().zip(nodes) {
+            let exponent = variance_mm2 * e;
+            *place = if exponent > EXPONENT_LEAST { weight * exponent.exp() } else { 0.0 };
         }
     }
 

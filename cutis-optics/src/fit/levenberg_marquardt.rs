@@ -9,21 +9,23 @@ use nalgebra::{DMatrix, DVector};
 
 /// Steps, taken or refused, before giving up: far more than any measured profile has needed.
 const STEPS_MAX: usize = 300;
-/// The last step promises less than this part of the cost; steps square the distance, so it leaves 1e-10 at most.
-const GAIN_LAST: f64 = 1e-5;
+/// To the end: the last step promises less than this part of the cost; steps square the distance, so it leaves 1e-10 at most.
+pub(super) const GAIN_LAST: f64 = 1e-5;
 /// A small gain expected means "arrived" only where damping does not hold the step back.
 const DAMPING_CALM: f64 = 1e-2;
 /// Stop when ln v would move by less: the cost is quadratic around a minimum, so this is 1e-14 of it.
 const STEP_MIN: f64 = 1e-7;
 /// First damping, of the largest curvature.
 const DAMPING_FIRST: f64 = 1e-3;
+/// Least damping after a step that led uphill: less would hardly change it.
+const DAMPING_REFUSED: f64 = 1e-2;
 /// Damping falls at most so fast, by a step as good as expected.
 const DAMPING_FALL: f64 = 0.1;
 /// Longest step of one ln v: a factor e in the variance; beyond, the quadratic model is a fairy tale.
 const STEP_MAX: f64 = 1.0;
 
-/// Walks downhill from `start` until nothing is gained any more.
-pub(super) fn descend(problem: &Problem, start: Solution) -> Solution {
+/// Walks downhill from `start` until a step promises no more than `gain_last`, a part of the cost.
+pub(super) fn descend(problem: &Problem, start: Solution, gain_last: f64) -> Solution {
     let mut here = start;
     let (mut damping, mut growth) = (DAMPING_FIRST, 2.0);
     let mut model = Model::new(problem, &here);
@@ -41,7 +43,7 @@ pub(super) fn descend(problem: &Problem, start: Solution) -> Solution {
         if step.amax() < STEP_MIN {
             break;
         }
-        let is_last = damping < DAMPING_CALM && expected <= GAIN_LAST * here.cost;
+        let is_last = damping < DAMPING_CALM && expected <= gain_last * here.cost;
         let there = problem.solve(&moved(problem, &here.ln_variances, &step));
         match there.filter(|there| there.cost < here.cost) {
             Some(there) => {
@@ -56,7 +58,7 @@ pub(super) fn descend(problem: &Problem, start: Solution) -> Solution {
             }
             None if is_last => break,
             None => {
-                damping *= growth;
+                damping = (damping * growth).max(DAMPING_REFUSED);
                 growth *= 2.0;
             }
         }
@@ -122,7 +124,7 @@ mod tests {
         let sum = GaussianSum::new([(0.2, 0.03), (0.3, 0.4), (0.4, 2.0)].map(term).to_vec());
         for method in [FitMethod::Optimal, FitMethod::Energy] {
             let problem = Problem::new(&[&sum], method).unwrap();
-            let end = descend(&problem, problem.solve(&[-2.0, 0.0, 1.5]).unwrap());
+            let end = descend(&problem, problem.solve(&[-2.0, 0.0, 1.5]).unwrap(), GAIN_LAST);
             // The cost is quadratic around the truth; steps stop when it falls no more, at rounding.
             assert!(end.cost < 1e-18, "{}", end.cost);
             for (found, truth) in end.variances_mm2().iter().zip([0.03, 0.4, 2.0]) {

@@ -53,7 +53,7 @@ pub(super) struct Derivatives {
 
 struct Channel {
     squares: LeastSquares,
-    residual: DVector<f64>,
+    residual: Vec<f64>,
 }
 
 impl Solution {
@@ -101,7 +101,10 @@ impl Problem {
     pub(super) fn allowed(&self, ln_variances: &[f64]) -> Vec<f64> {
         let (low, high) = self.grid.variance_range_mm2();
         let seen: Vec<f64> = ln_variances.iter().map(|v| v.clamp(low.ln(), high.ln())).collect();
-        self.limits.map_or(seen.clone(), |limits| limits.allowed(&seen))
+        match self.limits {
+            Some(limits) => limits.allowed(&seen),
+            None => seen,
+        }
     }
 
     fn sign_rule(&self) -> SignRule {
@@ -110,16 +113,15 @@ impl Problem {
 
     /// The best weights for these variances, and what error they leave.
     pub(super) fn solve(&self, ln_variances: &[f64]) -> Option<Solution> {
-        let design = self.design(ln_variances);
-        let channel = |target: &Target| {
-            let mut columns = design.clone();
-            columns.row_mut(0).fill(target.energy_row);
-            let squares = solve(&columns, &target.b, self.sign_rule())?;
-            let residual = &target.b - columns * DVector::from_column_slice(&squares.weights);
-            Some(Channel { squares, residual })
-        };
-        let channels = self.targets.iter().map(channel).collect::<Option<Vec<_>>>()?;
-        let cost: f64 = channels.iter().map(|c| c.residual.norm_squared()).sum();
+        let mut design = self.design(ln_variances);
+        let mut channels = Vec::with_capacity(self.targets.len());
+        for target in &self.targets {
+            design.row_mut(0).fill(target.energy_row);
+            let squares = solve(&design, &target.b, self.sign_rule())?;
+            let residual = residual(&target.b, &design, &squares.weights);
+            channels.push(Channel { squares, residual });
+        }
+        let cost: f64 = channels.iter().map(|c| dot(&c.residual, &c.residual)).sum();
         cost.is_finite().then(|| Solution { ln_variances: ln_variances.to_vec(), cost, design, channels })
     }
 
@@ -132,37 +134,47 @@ impl Problem {
     /// matrix is u⊥_i·u⊥_j + z_i·z_j; with it alone steps halve the distance at best, with all of it they square it.
     pub(super) fn derivatives(&self, solution: &Solution) -> Derivatives {
         let n = solution.ln_variances.len();
-        let slopes = self.design_slopes(solution);
         let none = DMatrix::zeros(n, n);
         let mut sum =
             Derivatives { gradient: DVector::zeros(n), curvature: none.clone(), gauss_newton: none };
         for channel in &solution.channels {
-            let bends = self.bends(solution, channel, &slopes);
-            channel.add_derivatives(&slopes, &bends, &mut sum);
+            let changes = self.changes(solution, channel);
+            channel.add_derivatives(changes, &mut sum);
         }
         sum
     }
 
-    /// a''·r for each column: a'' = (1 - v k²/2) a'.
-    fn bends(&self, solution: &Solution, channel: &Channel, slopes: &DMatrix<f64>) -> Vec<f64> {
-        let bend = |(column, v): (&[f64], f64)| {
-            let rows = column.iter().zip(channel.residual.as_slice()).skip(1).zip(self.grid.k_per_mm());
-            rows.map(|((slope, r), k)| (1.0 - 0.5 * v * k * k) * slope * r).sum()
-        };
-        let columns = slopes.as_slice().chunks_exact(self.rows());
-        columns.zip(solution.variances_mm2()).map(bend).collect()
+    /// What the columns in use do as their variances change: a' = -v k²/2 a, a'' = (1 - v k²/2) a'.
+    fn changes(&self, solution: &Solution, channel: &Channel) -> Changes {
+        let active = &channel.squares.active;
+        let (rows, exponents) = (self.rows(), self.grid.exponents_per_mm2());
+        let mut bent = vec![0.0; rows];
+        let nodes = bent[1..].iter_mut().zip(&channel.residual[1..]).zip(exponents);
+        nodes.for_each(|((bent, r), exponent)| *bent = r * exponent);
+        let mut changes =
+            Changes { slopes: DMatrix::zeros(rows, active.len()), pulls: Vec::new(), bends: Vec::new() };
+        for (slope, &i) in changes.slopes.as_mut_slice().chunks_exact_mut(rows).zip(active) {
+            let v = solution.ln_variances[i].exp();
+            // The energy row does not change.
+            let nodes = slope[1..].iter_mut().zip(&column(&solution.design, i)[1..]).zip(exponents);
+            nodes.for_each(|((slope, entry), exponent)| *slope = v * exponent * entry);
+            let pull = dot(slope, &channel.residual);
+            changes.pulls.push(pull);
+            changes.bends.push(pull + v * dot(slope, &bent));
+        }
+        changes
     }
 
     /// Relative RMS power error (eq. 10) of a sum against one channel's profile.
     pub(super) fn relative_error(&self, channel: usize, sum: &GaussianSum) -> f64 {
         let target = &self.targets[channel];
-        let mut left = target.b.rows(1, self.grid.len()) * target.norm;
+        let mut left = target.b.as_slice()[1..].to_vec();
         let mut gaussian = vec![0.0; self.grid.len()];
         for term in &sum.terms {
             self.grid.fill_gaussian(term.variance_mm2, &mut gaussian);
-            left.iter_mut().zip(&gaussian).for_each(|(left, g)| *left -= term.weight * g);
+            subtract(&mut left, &gaussian, term.weight / target.norm);
         }
-        left.norm() / target.norm
+        dot(&left, &left).sqrt()
     }
 
     /// Weights of one channel for the profile itself, in the order of the variances; under [`FitMethod::Energy`] their sum
@@ -186,17 +198,6 @@ impl Problem {
             self.grid.fill_gaussian(ln_v.exp(), &mut column[1..]);
         }
         design
-    }
-
-    /// d/d(ln v) of each column: -v k²/2 times the column; the energy row does not change.
-    fn design_slopes(&self, solution: &Solution) -> DMatrix<f64> {
-        let mut slopes = solution.design.clone();
-        for (mut column, v) in slopes.column_iter_mut().zip(solution.variances_mm2()) {
-            for (entry, k) in column.iter_mut().skip(1).zip(self.grid.k_per_mm()) {
-                *entry *= -0.5 * v * k * k;
-            }
-        }
-        slopes
     }
 }
 
@@ -223,50 +224,58 @@ impl Target {
     }
 }
 
+/// What a channel's columns in use do as their variances change, in the order of those columns.
+struct Changes {
+    /// a' (rows × active).
+    slopes: DMatrix<f64>,
+    /// a'·r.
+    pulls: Vec<f64>,
+    /// a''·r.
+    bends: Vec<f64>,
+}
+
 impl Channel {
     /// Adds this channel's part to the derivatives; columns without weight have none.
-    fn add_derivatives(&self, slopes: &DMatrix<f64>, bends: &[f64], sum: &mut Derivatives) {
+    fn add_derivatives(&self, changes: Changes, sum: &mut Derivatives) {
         let LeastSquares { weights, active, r, .. } = &self.squares;
-        let q = self.squares.basis();
-        let rows = self.residual.len();
-        let q_column = |i: usize| &q.as_slice()[i * rows..(i + 1) * rows];
-        let moved: Vec<Moved> = active
-            .iter()
-            .enumerate()
-            .map(|(place, &column)| {
-                let slope = &slopes.as_slice()[column * rows..(column + 1) * rows];
-                let pull = dot(slope, self.residual.as_slice());
-                sum.gradient[column] -= pull * weights[column];
-                sum.curvature[(column, column)] -= weights[column] * bends[column];
-                let mut outside: Vec<f64> = slope.iter().map(|a| a * weights[column]).collect();
-                let inside = (0..active.len()).map(|i| dot(q_column(i), &outside)).collect::<Vec<_>>();
-                for (i, along) in inside.iter().enumerate() {
-                    outside.iter_mut().zip(q_column(i)).for_each(|(x, q)| *x -= along * q);
-                }
-                let mut unit = DVector::zeros(active.len());
-                unit[place] = pull;
-                // The triangle was inverted once already to get the weights, so it is regular; zeros would only drop this.
-                let back = r.tr_solve_upper_triangular(&unit).unwrap_or_else(|| DVector::zeros(active.len()));
-                Moved { outside, inside: DVector::from_vec(inside), back }
-            })
-            .collect();
-        for (i, &column) in active.iter().enumerate() {
-            for (j, &other) in active.iter().enumerate() {
-                let (a, b) = (&moved[i], &moved[j]);
-                let (outside, back) = (dot(&a.outside, &b.outside), a.back.dot(&b.back));
-                sum.gauss_newton[(column, other)] += outside + back;
-                sum.curvature[(column, other)] +=
-                    outside - back + a.inside.dot(&b.back) + a.back.dot(&b.inside);
+        let Changes { slopes: mut turned, pulls, bends } = changes;
+        let n = active.len();
+        let mut back = DMatrix::zeros(n, n);
+        for (place, &i) in active.iter().enumerate() {
+            sum.gradient[i] -= weights[i] * pulls[place];
+            sum.curvature[(i, i)] -= weights[i] * bends[place];
+            back[(place, place)] = pulls[place];
+            turned.column_mut(place).scale_mut(weights[i]);
+        }
+        // The triangle was inverted once already to get the weights, so it is regular.
+        r.tr_solve_upper_triangular_mut(&mut back);
+        turned.as_mut_slice().chunks_exact_mut(self.residual.len()).for_each(|u| self.squares.turn(u));
+        for (place, &i) in active.iter().enumerate() {
+            for (other, &j) in active.iter().enumerate() {
+                let (inside_i, outside_i) = column(&turned, place).split_at(n);
+                let (inside_j, outside_j) = column(&turned, other).split_at(n);
+                let (back_i, back_j) = (column(&back, place), column(&back, other));
+                let (outside, back) = (dot(outside_i, outside_j), dot(back_i, back_j));
+                sum.gauss_newton[(i, j)] += outside + back;
+                sum.curvature[(i, j)] += outside - back + dot(inside_i, back_j) + dot(back_i, inside_j);
             }
         }
     }
 }
 
-/// What the change of one variance does: u⊥, Qᵀu and z of [`Problem::derivatives`].
-struct Moved {
-    outside: Vec<f64>,
-    inside: DVector<f64>,
-    back: DVector<f64>,
+fn column(matrix: &DMatrix<f64>, i: usize) -> &[f64] {
+    &matrix.as_slice()[i * matrix.nrows()..(i + 1) * matrix.nrows()]
+}
+
+/// b - A w.
+fn residual(b: &DVector<f64>, a: &DMatrix<f64>, weights: &[f64]) -> Vec<f64> {
+    let mut left = b.as_slice().to_vec();
+    weights.iter().enumerate().for_each(|(i, weight)| subtract(&mut left, column(a, i), *weight));
+    left
+}
+
+fn subtract(left: &mut [f64], column: &[f64], weight: f64) {
+    left.iter_mut().zip(column).for_each(|(left, entry)| *left -= weight * entry);
 }
 
 #[cfg(test)]

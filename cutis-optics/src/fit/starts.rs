@@ -3,7 +3,7 @@
 //! The best variances of these profiles lie nearly on a geometric sequence. All sequences of a coarse grid of first and last
 //! variances are judged by their error with best weights (cheap), and the best few are run downhill.
 
-use super::levenberg_marquardt::descend;
+use super::levenberg_marquardt::{GAIN_LAST, descend};
 use super::problem::{Problem, Solution};
 use super::{FitError, FitMethod};
 use core::cmp::Ordering;
@@ -27,6 +27,8 @@ const MANY_PLACES: usize = 8;
 const ROUGH: usize = 4;
 /// … run downhill on every second while that is easy, and to the end on all.
 const COARSE: usize = 2;
+/// Part of the cost that a step on the coarse nodes promises when it is the last: the minimum lies elsewhere there.
+const GAIN_COARSE: f64 = 1e-2;
 
 /// The best of several runs.
 pub(super) fn best_solution(problem: &Problem, gaussians: usize) -> Result<Solution, FitError> {
@@ -42,9 +44,9 @@ pub(super) fn best_solution(problem: &Problem, gaussians: usize) -> Result<Solut
     for places in [PLACES, MANY_PLACES] {
         let starts = judged(places);
         let starts = starts.iter().filter_map(|start| coarse.solve(&start.ln_variances)).take(runs);
-        let near = starts.map(|start| descend(&coarse, start));
+        let near = starts.map(|start| descend(&coarse, start, GAIN_COARSE));
         let near = near.filter_map(|near| problem.solve(&near.ln_variances));
-        if let Some(best) = near.map(|near| descend(problem, near)).min_by(by_cost) {
+        if let Some(best) = near.map(|near| descend(problem, near, GAIN_LAST)).min_by(by_cost) {
             return Ok(best);
         }
     }
@@ -87,7 +89,7 @@ mod tests {
         for _ in 0..runs {
             let ln_variances: Vec<f64> = (0..gaussians).map(|_| low + (high - low) * uniform()).collect();
             if let Some(start) = problem.solve(&ln_variances) {
-                best = best.min(descend(problem, start).cost);
+                best = best.min(descend(problem, start, GAIN_LAST).cost);
             }
         }
         best

@@ -11,7 +11,7 @@ pub(super) enum SignRule {
     NotNegative,
 }
 
-/// Weights that minimise |b - A w|, and the orthogonal basis of the columns in use.
+/// Weights that minimise |b - A w|, and the reflections that turn the columns in use into a triangle.
 pub(super) struct LeastSquares {
     /// One weight per column; 0 for columns not in use.
     pub(super) weights: Vec<f64>,
@@ -21,6 +21,8 @@ pub(super) struct LeastSquares {
     reflectors: DMatrix<f64>,
     /// Triangle with A_active = Q R.
     pub(super) r: DMatrix<f64>,
+    /// b, turned: Qᵀb first, then what no column reaches.
+    turned: DVector<f64>,
 }
 
 /// Solves for the weights; `None` when a number is not finite or, with free signs, when columns coincide to rounding.
@@ -32,7 +34,7 @@ pub(super) fn solve(a: &DMatrix<f64>, b: &DVector<f64>, rule: SignRule) -> Optio
     }
     // All the algorithm asks of A and b is in the small triangle; where columns coincide there is none, and A itself serves.
     let mut active = match free {
-        Some(free) => not_negative_set(&free.r, &free.basis().tr_mul(b))?,
+        Some(free) => not_negative_set(&free.r, &free.turned.rows(0, free.r.nrows()).into_owned())?,
         None => not_negative_set(a, b)?,
     };
     loop {
@@ -48,29 +50,26 @@ pub(super) fn solve(a: &DMatrix<f64>, b: &DVector<f64>, rule: SignRule) -> Optio
 fn solve_on(a: &DMatrix<f64>, b: &DVector<f64>, active: &[usize]) -> Option<LeastSquares> {
     let (reflectors, r) = triangle(a, active);
     let mut turned = b.clone();
-    for (j, v) in reflectors.as_slice().chunks_exact(a.nrows()).enumerate() {
-        reflect(&v[j..], &mut turned.as_mut_slice()[j..]);
-    }
+    turn(&reflectors, turned.as_mut_slice());
     let w = r.solve_upper_triangular(&turned.rows(0, r.nrows()))?;
     let mut weights = vec![0.0; a.ncols()];
     for (&column, &weight) in active.iter().zip(w.iter()) {
         weights[column] = weight;
     }
     let finite = weights.iter().all(|w| w.is_finite());
-    finite.then_some(LeastSquares { weights, active: active.to_vec(), reflectors, r })
+    finite.then_some(LeastSquares { weights, active: active.to_vec(), reflectors, r, turned })
 }
 
 impl LeastSquares {
-    /// Orthonormal basis of the columns in use (rows × active): the reflections, undone on the first unit vectors.
-    pub(super) fn basis(&self) -> DMatrix<f64> {
-        let (rows, n) = (self.reflectors.nrows(), self.reflectors.ncols());
-        let mut q = DMatrix::identity(rows, n);
-        for (j, v) in self.reflectors.as_slice().chunks_exact(rows).enumerate().rev() {
-            for column in q.as_mut_slice().chunks_exact_mut(rows).skip(j) {
-                reflect(&v[j..], &mut column[j..]);
-            }
-        }
-        q
+    /// Turns a column as those in use were turned: its part along each of them comes first (Qᵀx), then what lies outside.
+    pub(super) fn turn(&self, x: &mut [f64]) {
+        turn(&self.reflectors, x);
+    }
+}
+
+fn turn(reflectors: &DMatrix<f64>, x: &mut [f64]) {
+    for (j, v) in reflectors.as_slice().chunks_exact(x.len()).enumerate() {
+        reflect(&v[j..], &mut x[j..]);
     }
 }
 
@@ -105,9 +104,9 @@ fn reflect(v: &[f64], x: &mut [f64]) {
     x.iter_mut().zip(v).for_each(|(x, v)| *x -= along * v);
 }
 
-/// Sixteen sums at a time: additions of one sum would wait for each other.
+/// Eight sums at a time: additions of one sum would wait for each other.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    const SUMS: usize = 16;
+    const SUMS: usize = 8;
     let (many_a, many_b) = (a.chunks_exact(SUMS), b.chunks_exact(SUMS));
     let rest: f64 = many_a.remainder().iter().zip(many_b.remainder()).map(|(x, y)| x * y).sum();
     let mut sums = [0.0; SUMS];

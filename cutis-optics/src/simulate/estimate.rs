@@ -113,6 +113,11 @@ impl Estimates {
         self.range(self.slots.reflectance_by_radius, self.grid.rings.count() + 1)
     }
 
+    /// The same for the bottom.
+    pub fn transmittance_by_ring(&self) -> Vec<Estimate> {
+        self.range(self.slots.transmittance_by_radius, self.grid.rings.count() + 1)
+    }
+
     /// Edges of the rings from 0 outwards, mm.
     pub fn ring_edges_mm(&self) -> &[f64] {
         self.grid.rings.edges_mm()

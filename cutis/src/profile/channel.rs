@@ -25,6 +25,8 @@ pub struct Channel {
     pub source: Option<ProfileSource>,
     pub layers: Vec<TissueLayer>,
     pub profile: BoxedProfile,
+    /// What comes out below; none of endless layers and kernels.
+    pub transmitted: Option<BoxedProfile>,
     /// Standard deviation of the beam it is seen under, mm; none for a point.
     pub beam_standard_deviation_mm: Option<f64>,
     /// What chance may have done to the total, where it was simulated.
@@ -86,8 +88,13 @@ pub fn compute(job: &Job) -> Result<Vec<Channel>> {
 fn of_layers(job: &Job, channel: Option<usize>, layers: &[TissueLayer]) -> Result<Channel> {
     let start = Instant::now();
     let source = job.source.unwrap_or_else(|| ProfileSource::default_for(layers));
-    let Sourced { profile, beam_standard_deviation_mm, total_standard_error, light_beyond_rings } =
-        source::of_layers(job, source, layers).map_err(|error| in_channel(channel, &error))?;
+    let Sourced {
+        profile,
+        transmitted,
+        beam_standard_deviation_mm,
+        total_standard_error,
+        light_beyond_rings,
+    } = source::of_layers(job, source, layers).map_err(|error| in_channel(channel, &error))?;
     let settings = job.fit_settings(layers);
     let fitted = fit_with(&*profile, &settings).map_err(|error| in_channel(channel, &error))?;
     let wall_seconds = start.elapsed().as_secs_f64();
@@ -97,6 +104,7 @@ fn of_layers(job: &Job, channel: Option<usize>, layers: &[TissueLayer]) -> Resul
         source: Some(source),
         layers: layers.to_vec(),
         profile,
+        transmitted,
         beam_standard_deviation_mm,
         total_standard_error,
         light_beyond_rings,
@@ -121,6 +129,7 @@ fn of_kernel(job: &Job, channel: usize, kernel: GaussianSum) -> Result<Channel> 
         source: None,
         layers: Vec::new(),
         profile: Box::new(kernel),
+        transmitted: None,
         beam_standard_deviation_mm: None,
         total_standard_error: None,
         light_beyond_rings: 0.0,
@@ -148,6 +157,12 @@ impl Channel {
     pub fn mean_free_path_mm(&self) -> f64 {
         let narrowest = || self.sum.sum().terms.first().map_or(1.0, |g| g.variance_mm2.sqrt());
         self.layers.first().map_or_else(narrowest, |layer| layer.medium.transport_mean_free_path_mm())
+    }
+
+    /// T_d: 0 of endless layers; none of a kernel, which does not know.
+    pub fn total_transmittance(&self) -> Option<f64> {
+        let known = !self.layers.is_empty();
+        known.then(|| self.transmitted.as_ref().map_or(0.0, |transmitted| transmitted.total()))
     }
 
     /// For each layer whether diffusion holds in it.

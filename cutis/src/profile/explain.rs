@@ -3,12 +3,16 @@
 use super::Profiled;
 use super::channel::Channel;
 use super::job::Job;
-use cutis_optics::{DiffusionValidity, FitSettings, Medium, Stack, TooThin, fit_with};
+use cutis_optics::{DiffusionValidity, FitSettings, Medium, ProfileSource, Stack, TooThin, Trust, fit_with};
 use miette::{Result, miette};
 use serde::Serialize;
 
 /// Numbers of Gaussians that are tried.
 const TRIED: std::ops::RangeInclusive<usize> = 1..=8;
+
+/// The sources that are formulas.
+const DIFFUSION_SOURCES: [ProfileSource; 4] =
+    [ProfileSource::Dipole, ProfileSource::BetterDipole, ProfileSource::Multipole, ProfileSource::Beam];
 
 /// A channel, explained.
 #[derive(Serialize)]
@@ -16,6 +20,8 @@ pub struct Explanation {
     pub total_diffuse_reflectance: f64,
     /// 0 for a half-space; null for a kernel, which does not know.
     pub total_transmittance: Option<f64>,
+    /// Which formula to believe for these layers.
+    pub sources: Vec<Trust>,
     pub layers: Vec<LayerExplanation>,
     pub fits: Vec<Trial>,
 }
@@ -46,14 +52,18 @@ pub fn all(profiled: &Profiled, job: &Job) -> Result<Vec<Explanation>> {
 }
 
 fn explanation(channel: &Channel, job: &Job) -> Result<Explanation> {
-    // Transmittance is a matter of the whole stack, whichever model gave the reflectance.
     let stack = Stack::in_air(&channel.layers).ok();
     let thin = stack.as_ref().map(Stack::too_thin).unwrap_or_default();
     let thin = |number: usize| thin.iter().find(|(layer, _)| *layer == number).map(|(_, thin)| *thin);
     let media = channel.layers.iter().map(|layer| &layer.medium).enumerate();
     Ok(Explanation {
         total_diffuse_reflectance: channel.profile.total(),
-        total_transmittance: stack.map(|stack| stack.transmittance_spectrum(0.0)),
+        total_transmittance: channel.total_transmittance(),
+        sources: DIFFUSION_SOURCES
+            .iter()
+            .filter(|_| !channel.layers.is_empty())
+            .map(|source| source.trust(&channel.layers))
+            .collect(),
         layers: media.zip(channel.validity()).map(|((i, medium), v)| layer(medium, v, thin(i + 1))).collect(),
         fits: TRIED.map(|gaussians| trial(channel, gaussians, job)).collect::<Result<_>>()?,
     })

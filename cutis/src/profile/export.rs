@@ -1,8 +1,7 @@
 //! Files for shaders, tables and other renderers.
 
-use super::Profiled;
+use super::{Profiled, radial};
 use crate::cli::ProfileArgs;
-use crate::whole_file;
 use cutis_optics::translate::{GltfDraft, Subject, Target, Translation, translate};
 use miette::{Result, bail, miette};
 use std::path::{Path, PathBuf};
@@ -12,6 +11,8 @@ use std::path::{Path, PathBuf};
 pub enum Format {
     Json,
     Csv,
+    /// R(r), and T(r) where there is any, by radius.
+    RadialCsv,
     Wgsl,
     Glsl,
     Hlsl,
@@ -26,9 +27,10 @@ pub struct Export {
     pub format: Format,
 }
 
-const TABLES: [(&str, Format); 5] = [
+const TABLES: [(&str, Format); 6] = [
     ("json", Format::Json),
     ("csv", Format::Csv),
+    ("radial-csv", Format::RadialCsv),
     ("wgsl", Format::Wgsl),
     ("glsl", Format::Glsl),
     ("hlsl", Format::Hlsl),
@@ -69,12 +71,13 @@ impl Export {
         matches!(self.format, Format::For(..))
     }
 
-    /// Writes the file. A translation is given back, because its loss belongs into the report.
-    pub fn write(&self, profiled: &Profiled) -> Result<Option<Translation>> {
+    /// What the file is to hold. A translation is given along, because its loss belongs into the report.
+    pub fn render(&self, profiled: &Profiled) -> Result<(String, Option<Translation>)> {
         let table = || profiled.table();
-        let (text, translation) = match self.format {
+        Ok(match self.format {
             Format::Json => (table().to_json(), None),
             Format::Csv => (table().to_csv(), None),
+            Format::RadialCsv => (radial::csv(profiled), None),
             Format::Wgsl => (table().to_wgsl(), None),
             Format::Glsl => (table().to_glsl(), None),
             Format::Hlsl => (table().to_hlsl(), None),
@@ -82,9 +85,7 @@ impl Export {
                 let translation = translated(profiled, target, draft)?;
                 (translation.text.clone(), Some(translation))
             }
-        };
-        whole_file::write(&self.path, text.as_bytes())?;
-        Ok(translation)
+        })
     }
 }
 

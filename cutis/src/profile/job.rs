@@ -10,6 +10,7 @@ use crate::simulate::photons_in_range;
 use crate::whole_file;
 use cutis_optics::{FitMethod, FitSettings, ProfileSource, TissueLayer};
 use miette::{Result, bail, miette};
+use std::path::{Path, PathBuf};
 
 /// What is to be done.
 pub struct Job {
@@ -60,7 +61,9 @@ impl Job {
             bail!("a material for another renderer needs all three channels: leave --channel out");
         }
         let plot = args.plot.as_deref().map(PlotFile::new).transpose()?;
-        args.plot.iter().chain(&args.export).try_for_each(|path| whole_file::check(path))?;
+        let outputs: Vec<&Path> = args.plot.iter().chain(&args.export).map(PathBuf::as_path).collect();
+        outputs.iter().try_for_each(|path| whole_file::check(path))?;
+        whole_file::check_distinct(&outputs)?;
         Ok(Self {
             material,
             channel,

@@ -7,6 +7,7 @@ mod job;
 mod layer_file;
 mod material;
 mod plot;
+mod radial;
 mod report;
 mod source;
 mod text;
@@ -14,9 +15,10 @@ mod text;
 use crate::cli::ProfileArgs;
 use crate::job::threads_in_range;
 use crate::machine::choose_threads;
-use crate::{Outcome, talk};
+use crate::{Outcome, talk, whole_file};
 use channel::{Channel, ChannelFit};
 use cutis_optics::export::KernelTable;
+use cutis_optics::translate::Translation;
 use cutis_optics::{RgbFit, RgbGaussianSum, fit_joint};
 pub use export::format_names;
 use job::Job;
@@ -41,11 +43,7 @@ pub fn run(args: &ProfileArgs, verbose: u8) -> Result<Outcome> {
     choose_threads(threads_in_range(args.threads)?)?;
     let profiled = Profiled::new(&job)?;
     profiled.channels.iter().flat_map(Channel::warnings).for_each(|warning| tracing::warn!("{warning}"));
-    if let Some(plot) = &job.plot {
-        plot.write(&profiled)?;
-    }
-    let written = job.exports.iter().map(|export| export.write(&profiled)).collect::<Result<Vec<_>>>()?;
-    let translations = written.into_iter().flatten().collect();
+    let translations = write_files(&profiled, &job)?;
     let explanations = if job.explain { Some(explain::all(&profiled, &job)?) } else { None };
     let report = Report::new(&profiled, explanations, translations, start.elapsed().as_secs_f64());
     if job.json {
@@ -54,6 +52,19 @@ pub fn run(args: &ProfileArgs, verbose: u8) -> Result<Outcome> {
         talk::say(text::text(&report).trim_end())?;
     }
     Ok(Outcome::Done)
+}
+
+/// Plot and exports, all or none; what was translated is given back.
+fn write_files(profiled: &Profiled, job: &Job) -> Result<Vec<Translation>> {
+    let exports = job.exports.iter().map(|e| e.render(profiled)).collect::<Result<Vec<_>>>()?;
+    let plot = match &job.plot {
+        Some(plot) => Some((plot.path.as_path(), plot.render(profiled)?)),
+        None => None,
+    };
+    let plot = plot.iter().map(|(path, bytes)| (*path, bytes.as_slice()));
+    let texts = job.exports.iter().zip(&exports).map(|(e, (text, _))| (e.path.as_path(), text.as_bytes()));
+    whole_file::write_all(&plot.chain(texts).collect::<Vec<_>>())?;
+    Ok(exports.into_iter().filter_map(|(_, translation)| translation).collect())
 }
 
 impl<'a> Profiled<'a> {

@@ -3,6 +3,7 @@
 use super::Profiled;
 use super::channel::{Channel, method_name};
 use super::explain::Explanation;
+use super::radial::{RadialProfile, radii_mm};
 use cutis_optics::TissueLayer;
 use cutis_optics::translate::{ChannelLoss, Field, Translation};
 use serde::Serialize;
@@ -27,6 +28,12 @@ pub struct ChannelReport {
     pub source: String,
     pub layers: Vec<LayerReport>,
     pub total_diffuse_reflectance: f64,
+    /// Of layers that end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub total_transmittance: Option<f64>,
+    /// R(r) and T(r), of layers that end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radial_profile: Option<RadialProfile>,
     /// Of a simulated one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub total_diffuse_reflectance_standard_error: Option<f64>,
@@ -115,7 +122,8 @@ impl Report {
     ) -> Self {
         let mut explanations = explanations.unwrap_or_default().into_iter();
         let name = &profiled.material.name;
-        let channel = |channel: &Channel| ChannelReport::new(name, channel, explanations.next());
+        let r_mm = radii_mm(&profiled.channels);
+        let channel = |channel: &Channel| ChannelReport::new(name, channel, &r_mm, explanations.next());
         Self {
             material: name.clone(),
             origin: profiled.material.origin.clone(),
@@ -149,14 +157,17 @@ impl Report {
 }
 
 impl ChannelReport {
-    fn new(material: &str, channel: &Channel, explanation: Option<Explanation>) -> Self {
+    fn new(material: &str, channel: &Channel, r_mm: &[f64], explanation: Option<Explanation>) -> Self {
         let sum = channel.sum.sum();
+        let ends = channel.transmitted.is_some();
         Self {
             material: material.to_owned(),
             channel: channel.name,
             source: channel.source_name(),
             layers: channel.layers.iter().map(LayerReport::new).collect(),
             total_diffuse_reflectance: channel.profile.total(),
+            total_transmittance: channel.total_transmittance().filter(|_| ends),
+            radial_profile: ends.then(|| RadialProfile::new(channel, r_mm)),
             total_diffuse_reflectance_standard_error: channel.total_standard_error,
             beam_standard_deviation_mm: channel.beam_standard_deviation_mm,
             fit: FitReport {

@@ -4,7 +4,7 @@ use super::job::Job;
 use crate::progress::Bar;
 use crate::simulate::{ends, in_parallel};
 use cutis_optics::simulate::{Grid, Layer, LayeredSlab, Rings, Simulation};
-use cutis_optics::{BoxedProfile, Medium, ProfileSource, RingProfile, TissueLayer, WideBeam};
+use cutis_optics::{BoxedProfile, Medium, ProfileSource, RingProfile, Stack, TissueLayer, WideBeam};
 use cutis_render::prepare::RhoDt;
 use miette::{Result, miette};
 
@@ -26,6 +26,8 @@ const REACH_MEAN_FREE_PATHS: f64 = 1e5;
 /// A profile, and how it is seen.
 pub struct Sourced {
     pub profile: BoxedProfile,
+    /// What comes out below, where the layers end.
+    pub transmitted: Option<BoxedProfile>,
     /// Standard deviation of the beam, mm; none for a point.
     pub beam_standard_deviation_mm: Option<f64>,
     /// What chance may have done to the total, where it was simulated.
@@ -36,13 +38,9 @@ pub struct Sourced {
 
 /// The profile of `layers` as the job asks for it.
 pub fn of_layers(job: &Job, source: ProfileSource, layers: &[TissueLayer]) -> Result<Sourced> {
-    let (point, total_standard_error, light_beyond_rings): (BoxedProfile, _, _) = match source {
-        ProfileSource::MonteCarlo => {
-            let (rings, error) = simulated(job, layers)?;
-            let beyond = rings.beyond().value;
-            (Box::new(rings), Some(error), beyond)
-        }
-        _ => (computed(job, source, layers)?, None, 0.0),
+    let Point { reflected, transmitted, total_standard_error, light_beyond_rings } = match source {
+        ProfileSource::MonteCarlo => simulated(job, layers)?,
+        _ => computed(job, source, layers)?,
     };
     let usual_mm = || {
         let l_mm = layers[0].medium.transport_mean_free_path_mm();
@@ -56,19 +54,48 @@ pub fn of_layers(job: &Job, source: ProfileSource, layers: &[TissueLayer]) -> Re
             BEAM_LEAST * l_mm
         ));
     }
-    let profile: BoxedProfile = match beam_standard_deviation_mm {
-        Some(deviation_mm) => Box::new(WideBeam::new(point, deviation_mm)),
-        None => point,
+    let lit = |point: BoxedProfile| -> BoxedProfile {
+        match beam_standard_deviation_mm {
+            Some(deviation_mm) => Box::new(WideBeam::new(point, deviation_mm)),
+            None => point,
+        }
     };
-    Ok(Sourced { profile, beam_standard_deviation_mm, total_standard_error, light_beyond_rings })
+    Ok(Sourced {
+        profile: lit(reflected),
+        transmitted: transmitted.map(lit),
+        beam_standard_deviation_mm,
+        total_standard_error,
+        light_beyond_rings,
+    })
 }
 
-fn computed(job: &Job, source: ProfileSource, layers: &[TissueLayer]) -> Result<BoxedProfile> {
-    let profile = match job.roughness {
-        Some(roughness) => source.profile_under_rough_surface(layers, lets_in(&layers[0].medium, roughness)),
+/// What leaves under a point that is lit.
+struct Point {
+    reflected: BoxedProfile,
+    transmitted: Option<BoxedProfile>,
+    total_standard_error: Option<f64>,
+    light_beyond_rings: f64,
+}
+
+fn ends_below(layers: &[TissueLayer]) -> bool {
+    layers.last().is_some_and(|layer| layer.thickness_mm.is_finite())
+}
+
+fn computed(job: &Job, source: ProfileSource, layers: &[TissueLayer]) -> Result<Point> {
+    let share = job.roughness.map(|roughness| lets_in(&layers[0].medium, roughness));
+    let reflected = match share {
+        Some(share) => source.profile_under_rough_surface(layers, share),
         None => source.profile(layers),
     };
-    profile.map_err(|error| miette!("{error}"))
+    let reflected = reflected.map_err(|error| miette!("{error}"))?;
+    // Of the formulas only the multipole knows layers that end, and it is a stack.
+    let stack = || match share {
+        Some(share) => Stack::under_rough_surface(layers, share),
+        None => Stack::in_air(layers),
+    };
+    let stack = ends_below(layers).then(stack).transpose().map_err(|error| miette!("{error}"))?;
+    let transmitted = stack.and_then(Stack::into_transmittance).map(|t| Box::new(t) as BoxedProfile);
+    Ok(Point { reflected, transmitted, total_standard_error: None, light_beyond_rings: 0.0 })
 }
 
 /// Share of isotropic light that a rough surface lets in.
@@ -78,8 +105,7 @@ fn lets_in(medium: &Medium, roughness: f32) -> f64 {
     f64::from(RhoDt::new(f0 as f32).mean(roughness, 1.0))
 }
 
-/// A simulated profile, and the standard error of its total.
-fn simulated(job: &Job, layers: &[TissueLayer]) -> Result<(RingProfile, f64)> {
+fn simulated(job: &Job, layers: &[TissueLayer]) -> Result<Point> {
     if job.roughness.is_some() {
         return Err(miette!("the source monte-carlo knows smooth surfaces only: leave --roughness out"));
     }
@@ -91,7 +117,15 @@ fn simulated(job: &Job, layers: &[TissueLayer]) -> Result<(RingProfile, f64)> {
     let estimates = in_parallel(&simulation, job.photons, &bar);
     bar.finish();
     let error = estimates.diffuse_reflectance().standard_error / entered;
-    Ok((RingProfile::from_estimates(&estimates), error))
+    let below = || Box::new(RingProfile::transmittance_from_estimates(&estimates)) as BoxedProfile;
+    let rings = RingProfile::from_estimates(&estimates);
+    let light_beyond_rings = rings.beyond().value;
+    Ok(Point {
+        reflected: Box::new(rings),
+        transmitted: ends_below(layers).then(below),
+        total_standard_error: Some(error),
+        light_beyond_rings,
+    })
 }
 
 /// Reduced scattering has no phase function: isotropic, as all other sources take it.

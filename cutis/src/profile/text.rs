@@ -15,25 +15,28 @@ pub fn text(report: &Report) -> String {
     let mut text = String::new();
     put!(text, "{}  ({}; source {})", report.material, report.origin, report.source);
     layers(&mut text, report);
-    put!(text, "\nfit       Gaussians   R_d        energy     relative RMS power error   worst error");
+    put!(text, "\nfit       Gaussians   R_d          energy       relative RMS power error   worst error");
     for channel in &report.channels {
         let (fit, name) = (&channel.fit, channel.channel.unwrap_or("all"));
         put!(
             text,
-            "{name:3} {:8} {:6}      {:.6}   {:.6}   {:<24} {:.3e} /mm² at {:.3} mm",
+            "{name:3} {:8} {:6}      {:<11}  {:<11}  {:<24} {:.3e} /mm² at {} mm",
             fit.method,
             fit.weights.len(),
-            channel.total_diffuse_reflectance,
-            fit.energy,
-            format!("{:.4} %", 100.0 * fit.relative_rms_power_error),
+            digits(6, channel.total_diffuse_reflectance),
+            digits(6, fit.energy),
+            percent(fit.relative_rms_power_error),
             fit.worst_absolute_error_per_mm2,
-            fit.worst_error_at_mm
+            digits(3, fit.worst_error_at_mm)
         );
         if let Some(error) = channel.total_diffuse_reflectance_standard_error {
-            put!(text, "    R_d is simulated: ± {error:.6}");
+            put!(text, "    R_d is simulated: ± {}", digits(2, error));
+        }
+        if let Some(total) = channel.total_transmittance {
+            put!(text, "    T_d {}, comes out below", digits(6, total));
         }
         if let Some(mm) = channel.beam_standard_deviation_mm {
-            put!(text, "    under a beam of standard deviation {mm:.4} mm");
+            put!(text, "    under a beam of standard deviation {} mm", digits(4, mm));
         }
     }
     match &report.joint_kernel {
@@ -74,39 +77,63 @@ fn six_digits(value: f64) -> f64 {
     format!("{value:.5e}").parse().expect("a number was printed")
 }
 
+/// So many significant digits, however small the number; powers of ten where zeros would take more room.
+fn digits(count: usize, value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    if !(1e-4..1e6).contains(&size) {
+        return format!("{value:.*e}", count - 1);
+    }
+    let before_point = size.log10().floor() as i32 + 1;
+    format!("{value:.*}", (count as i32 - before_point).max(0) as usize)
+}
+
+fn percent(part: f64) -> String {
+    format!("{} %", digits(4, 100.0 * part))
+}
+
 fn joint(text: &mut String, kernel: &JointReport) {
-    let errors = kernel.relative_rms_power_error.map(|e| format!("{:.4} %", 100.0 * e)).join("  ");
+    let errors = kernel.relative_rms_power_error.map(percent).join("  ");
     put!(text, "\njoint kernel, method {}; relative RMS power error r g b: {errors}", kernel.method);
     put!(text, "variance [mm²]   weight r    weight g    weight b");
-    for (variance, [r, g, b]) in kernel.variances_mm2.iter().zip(&kernel.weights) {
-        put!(text, "{variance:<16.6} {r:<11.6} {g:<11.6} {b:.6}");
+    for (variance, weights) in kernel.variances_mm2.iter().zip(&kernel.weights) {
+        let [r, g, b] = weights.map(|w| digits(6, w));
+        put!(text, "{:<16} {r:<11} {g:<11} {b}", digits(6, *variance));
     }
 }
 
 fn kernel(text: &mut String, channel: &ChannelReport) {
     put!(text, "\nvariance [mm²]   weight {}", channel.channel.unwrap_or_default());
     for (variance, weight) in channel.fit.variances_mm2.iter().zip(&channel.fit.weights) {
-        put!(text, "{variance:<16.6} {weight:.6}");
+        put!(text, "{:<16} {}", digits(6, *variance), digits(6, *weight));
     }
 }
 
 fn explanation(text: &mut String, channel: &ChannelReport, explained: &Explanation) {
     let name = channel.channel.map_or_else(|| "all channels".to_owned(), |c| format!("channel {c}"));
     let transmittance =
-        explained.total_transmittance.map_or_else(|| "not known".to_owned(), |t| format!("{t:.6}"));
-    put!(text, "\n{name}: R_d {:.6}, T_d {transmittance}", explained.total_diffuse_reflectance);
+        explained.total_transmittance.map_or_else(|| "not known".to_owned(), |t| digits(6, t));
+    put!(text, "\n{name}: R_d {}, T_d {transmittance}", digits(6, explained.total_diffuse_reflectance));
+    for trust in &explained.sources {
+        let holds = if trust.holds { "holds" } else { "does not hold" };
+        put!(text, "  {:<13} {holds}: {}", trust.source, trust.words);
+    }
     for (i, layer) in explained.layers.iter().enumerate() {
-        let diffuse =
-            layer.diffuse_mean_free_path_mm.map_or_else(|| "endless".to_owned(), |l| format!("{l:.4} mm"));
-        put!(text, "  layer {}: reduced albedo {:.6}", i + 1, layer.albedo_reduced);
-        put!(text, "    transport mean free path {:.4} mm (1/sigma_t')", layer.transport_mean_free_path_mm);
+        let diffuse = layer
+            .diffuse_mean_free_path_mm
+            .map_or_else(|| "endless".to_owned(), |l| format!("{} mm", digits(4, l)));
+        put!(text, "  layer {}: reduced albedo {}", i + 1, digits(6, layer.albedo_reduced));
+        let transport = digits(4, layer.transport_mean_free_path_mm);
+        put!(text, "    transport mean free path {transport} mm (1/sigma_t')");
         put!(text, "    diffuse mean free path   {diffuse} (1/sigma_tr)");
         put!(text, "    {}", layer.verdict);
     }
-    put!(text, "  Gaussians   energy     relative RMS power error ({})", channel.fit.method);
+    put!(text, "  Gaussians   energy       relative RMS power error ({})", channel.fit.method);
     for trial in &explained.fits {
-        let error = 100.0 * trial.relative_rms_power_error;
-        put!(text, "  {:<11} {:.6}   {error:.4} %", trial.gaussians, trial.energy);
+        let (energy, error) = (digits(6, trial.energy), percent(trial.relative_rms_power_error));
+        put!(text, "  {:<11} {energy:<11}  {error}", trial.gaussians);
     }
 }
 

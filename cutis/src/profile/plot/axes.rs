@@ -42,6 +42,11 @@ pub const CHANNEL_PENS: [Pen; 3] = [
 pub const ONE_PEN: Pen = Pen { colour: INK, width: 1.8, dash: None, opacity: 1.0 };
 
 impl Pen {
+    /// For what comes out on the other side.
+    pub fn dotted(self) -> Self {
+        Self { width: 1.4, dash: Some((2, 5)), ..self }
+    }
+
     /// For what stands behind a curve.
     pub fn thin(self) -> Self {
         Self { width: 0.7, dash: None, opacity: 0.45, ..self }

@@ -8,13 +8,13 @@ mod panels;
 mod sampled;
 
 use super::Profiled;
-use crate::whole_file;
 use image::imageops::FilterType;
 use image::{ImageFormat, RgbImage};
 use miette::{IntoDiagnostic, Result, miette};
 use panels::{Figure, draw};
 use plotters::prelude::{BitMapBackend, IntoDrawingArea, SVGBackend};
 use plotters::style::{FontStyle, register_font};
+pub use sampled::Ranges;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
@@ -27,7 +27,7 @@ const OVERSAMPLING: u32 = 2;
 
 /// A picture to write.
 pub struct PlotFile {
-    path: PathBuf,
+    pub path: PathBuf,
     kind: Kind,
 }
 
@@ -49,16 +49,15 @@ impl PlotFile {
         Ok(Self { path: path.to_owned(), kind })
     }
 
-    /// Draws and writes.
-    pub fn write(&self, profiled: &Profiled) -> Result<()> {
+    /// Draws.
+    pub fn render(&self, profiled: &Profiled) -> Result<Vec<u8>> {
         register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
             .map_err(|_| miette!("the font inside the program is broken"))?;
         let figure = Figure::new(profiled);
-        let bytes = match self.kind {
-            Kind::Svg => svg(&figure)?.into_bytes(),
-            Kind::Png => png(&figure)?,
-        };
-        whole_file::write(&self.path, &bytes)
+        match self.kind {
+            Kind::Svg => Ok(svg(&figure)?.into_bytes()),
+            Kind::Png => png(&figure),
+        }
     }
 }
 

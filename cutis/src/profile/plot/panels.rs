@@ -83,11 +83,17 @@ where
     DB::ErrorType: 'static,
 {
     let axes = Axes { title: "(a) profile times radius", x: "r [mm]", y: "r R(r) [1/mm]", scale };
-    let top = 1.08 * highest(figure.all(|s| &s.r_profile));
-    let mut chart = axes.chart(area, 0.0..figure.ranges.r_max_mm, 0.0..top)?;
+    let most = highest(figure.all(|s| &s.r_profile)).max(highest(figure.all(|s| &s.r_transmittance)));
+    let mut chart = axes.chart(area, 0.0..figure.ranges.r_max_mm, 0.0..1.08 * most)?;
     for (row, curve) in figure.curves.iter().enumerate() {
         axes.curve(&mut chart, &curve.sampled.r_profile, 0.0, curve.pen)?;
         axes.legend(&chart, row, &curve.name, curve.pen)?;
+    }
+    let below = figure.curves.iter().filter(|curve| !curve.sampled.r_transmittance.is_empty());
+    for (i, curve) in below.enumerate() {
+        axes.curve(&mut chart, &curve.sampled.r_transmittance, 0.0, curve.pen.dotted())?;
+        let name = format!("{}, transmitted", curve.name);
+        axes.legend(&chart, figure.curves.len() + i, &name, curve.pen.dotted())?;
     }
     Ok(())
 }
@@ -100,7 +106,8 @@ where
         Axes {
             title: "(b) profile; thin: its fit and the Gaussians", x: "r [mm]", y: "R(r) [1/mm²]", scale
         };
-    let top = 10_f64.powf((1.3 * highest(figure.all(|s| &s.profile))).log10());
+    let most = highest(figure.all(|s| &s.profile)).max(highest(figure.all(|s| &s.transmittance)));
+    let top = 10_f64.powf((1.3 * most).log10());
     let bottom = top * 10_f64.powi(-DECADES);
     let (from, to) = figure.ranges.r_log_mm;
     let mut chart = axes.chart(area, (from..to).log_scale(), (bottom..top).log_scale())?;
@@ -111,6 +118,7 @@ where
         }
         axes.curve(&mut chart, &curve.sampled.fit, bottom, thin)?;
         axes.curve(&mut chart, &curve.sampled.profile, bottom, curve.pen)?;
+        axes.curve(&mut chart, &curve.sampled.transmittance, bottom, curve.pen.dotted())?;
     }
     Ok(())
 }

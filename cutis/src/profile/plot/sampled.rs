@@ -30,6 +30,9 @@ pub struct Ranges {
 pub struct Sampled {
     pub r_profile: Points,
     pub profile: Points,
+    /// T(r), times r and alone; empty where nothing comes out below.
+    pub r_transmittance: Points,
+    pub transmittance: Points,
     pub fit: Points,
     pub gaussians: Vec<Points>,
     pub residual: Points,
@@ -67,11 +70,17 @@ impl Sampled {
         let waves = self::logarithmic(ranges.k_log_per_mm);
         let at = |radii: &[f64]| -> Vec<f64> { radii.par_iter().map(|&r| profile.at_mm(r)).collect() };
         let exact = at(&linear);
+        let below = |radii: &[f64]| -> Points {
+            let transmitted = channel.transmitted.as_ref();
+            transmitted.map_or_else(Vec::new, |t| radii.par_iter().map(|&r| (r, t.at_mm(r))).collect())
+        };
         let curve = |x: &[f64], f: &dyn Fn(f64) -> f64| -> Points { x.iter().map(|&x| (x, f(x))).collect() };
         let pairs = || linear.iter().zip(&exact);
         Self {
             r_profile: pairs().map(|(&r, p)| (r, r * p)).collect(),
             residual: pairs().map(|(&r, p)| (r, r * (p - sum.at_mm(r)))).collect(),
+            r_transmittance: below(&linear).into_iter().map(|(r, t)| (r, r * t)).collect(),
+            transmittance: below(&logarithmic),
             profile: logarithmic.iter().copied().zip(at(&logarithmic)).collect(),
             fit: curve(&logarithmic, &|r| sum.at_mm(r)),
             gaussians: sum.terms.iter().map(|g| curve(&logarithmic, &|r| g.at_mm(r))).collect(),

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Error of a picture over the time it takes. Runs programs at several sample counts, measures the render itself (not the
-start of the program, the reading of files or the writing of the picture where the program can tell), compares each
-picture with a converged reference, and writes a table (CSV) and a plot (PNG).
+"""Error of a picture over the time it takes. Runs programs at several sample counts, takes from their reports the time of the
+render itself (without the start of the program and without files), compares each picture with a converged reference, and
+writes a table (CSV) and a plot (PNG).
 
 A run is PROGRAM:SAMPLES[,SAMPLES...][@REFERENCE], for example cutis:truth:1,4,16,64 or cycles:walk:16,64@cycles_4096.exr.
 Programs: cutis:TECHNIQUE, mitsuba:rough|smooth|matched, cycles:walk|skin|volume, eevee:walk.
@@ -146,12 +146,19 @@ def measure(run: Run, samples: int, reference: np.ndarray, arguments: argparse.N
         "program": run.program,
         "way": run.way,
         "samples": report["samples_per_pixel"],
-        "wall_seconds": round(report["wall_seconds"], 4),
+        "render_seconds": round(render_seconds(report), 4),
         "relative_rmse": round(relative_rmse(drawn, reference), 6),
         # All pixels together: a bias that more samples don't remove.
         "mean_difference": round(mean_difference(drawn, reference), 6),
         "reference": run.reference.name,
     }
+
+
+def render_seconds(report: dict) -> float:
+    """The time without the reading and writing of files: cutis lists them among its passes, the others leave them out.
+    Trees and tables of the scene count for cutis and Blender; Mitsuba builds its tree when it reads, which is left out."""
+    files = sum(p["milliseconds"] for p in report.get("passes", []) if p["name"] in ("read", "write"))
+    return report["wall_seconds"] - 1e-3 * files
 
 
 def masked(picture: np.ndarray, reference: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -176,7 +183,7 @@ def mean_difference(picture: np.ndarray, reference: np.ndarray) -> float:
 
 def as_line(row: dict) -> str:
     return (
-        f"{row['program']:8} {row['way']:14} {row['samples']:6} spp {row['wall_seconds']:9.3f} s   relative RMSE "
+        f"{row['program']:8} {row['way']:14} {row['samples']:6} spp {row['render_seconds']:9.3f} s   relative RMSE "
         f"{100 * row['relative_rmse']:8.3f} %   mean {100 * row['mean_difference']:+7.3f} %   against {row['reference']}"
     )
 
@@ -192,7 +199,7 @@ def plot(rows: list[dict], path: Path) -> None:
     figure, axes = pyplot.subplots(figsize=(7.0, 5.0))
     for name in dict.fromkeys((row["program"], row["way"], row["reference"]) for row in rows):
         points = [row for row in rows if (row["program"], row["way"], row["reference"]) == name]
-        x, y = [p["wall_seconds"] for p in points], [100 * p["relative_rmse"] for p in points]
+        x, y = [p["render_seconds"] for p in points], [100 * p["relative_rmse"] for p in points]
         axes.loglog(x, y, marker="o", label=f"{name[0]} {name[1]} against {name[2]}")
         for point, px, py in zip(points, x, y):
             axes.annotate(str(point["samples"]), (px, py), textcoords="offset points", xytext=(4, 4), fontsize=7)

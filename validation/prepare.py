@@ -23,9 +23,9 @@ SPHERE_RADIUS_MM = 10.0
 ENVIRONMENT_WIDTH, ENVIRONMENT_HEIGHT = 512, 256
 # The environment: a dim surrounding and one broad bright lobe from the front, left and above, so wide that programs
 # which find it only by chance still converge.
-AMBIENT_RADIANCE = 0.25
-LOBE_RADIANCE = 4.0
-LOBE_SHARPNESS = 8.0
+AMBIENT_RADIANCE = 0.15
+LOBE_RADIANCE = 2.5
+LOBE_SHARPNESS = 4.0
 LOBE_DIRECTION = (-0.45, 0.45, 0.77)
 
 

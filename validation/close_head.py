@@ -11,10 +11,11 @@ import os
 import sys
 from pathlib import Path
 
-import numpy as np
-
 import mesh_file
 from mesh_file import Mesh, Topology
+from packages import need
+
+np = need("numpy")
 
 ROOT = Path(__file__).resolve().parent.parent
 MILLIMETRES_PER_UNIT = 950.0  # as in scenes/lee_perry_smith.toml
@@ -28,7 +29,10 @@ def main() -> int:
     arguments = parse()
     source = arguments.input or assets_folder() / "lee_perry_smith" / "LeePerrySmith.obj"
     if not source.is_file():
-        print(f"close_head: {source} is not there; CUTIS_ASSETS names the folder that holds lee_perry_smith/", file=sys.stderr)
+        print(
+            f"close_head: {source} is not there; CUTIS_ASSETS names the folder that holds lee_perry_smith/",
+            file=sys.stderr,
+        )
         return 2
     facts = close(source, arguments.output, arguments.millimetres_per_unit)
     if arguments.self_intersections:
@@ -39,10 +43,29 @@ def main() -> int:
 
 def parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--input", type=Path, help="OBJ to close [default: lee_perry_smith/LeePerrySmith.obj in CUTIS_ASSETS, else ../shared/assets]")
-    parser.add_argument("-o", "--output", type=Path, default=ROOT / "target/validation/head.obj", help="OBJ to write [default: target/validation/head.obj]")
-    parser.add_argument("--millimetres-per-unit", type=float, default=MILLIMETRES_PER_UNIT, help="length of the unit of the input [mm, default 950]")
-    parser.add_argument("--self-intersections", action="store_true", help="also count the pairs of triangles that cut each other (needs bpy)")
+    parser.add_argument(
+        "--input",
+        type=Path,
+        help="OBJ to close [default: lee_perry_smith/LeePerrySmith.obj in CUTIS_ASSETS, else ../shared/assets]",
+    )
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        default=ROOT / "target/validation/head.obj",
+        help="OBJ to write [default: target/validation/head.obj]",
+    )
+    parser.add_argument(
+        "--millimetres-per-unit",
+        type=float,
+        default=MILLIMETRES_PER_UNIT,
+        help="length of the unit of the input [mm, default 950]",
+    )
+    parser.add_argument(
+        "--self-intersections",
+        action="store_true",
+        help="also count the pairs of triangles that cut each other (needs bpy)",
+    )
     parser.add_argument("--json", action="store_true", help="print the facts as one JSON object")
     return parser.parse_args()
 
@@ -109,11 +132,9 @@ def cap_facts(rim: np.ndarray, centre: np.ndarray) -> dict:
 def self_intersections(mesh: Mesh) -> dict:
     """Pairs of triangles without a common corner that cut each other, and the box around them: there a point can be inside
     twice, and programs that count crossings disagree with those that look at the side that was hit."""
-    try:
-        import bpy  # noqa: F401  brings mathutils along
-        from mathutils.bvhtree import BVHTree
-    except ImportError as error:
-        raise SystemExit("the package bpy is missing: pip install -r validation/requirements.txt (Python 3.11)") from error
+    need("bpy")  # brings mathutils along
+    from mathutils.bvhtree import BVHTree
+
     triangles = mesh.triangles()
     tree = BVHTree.FromPolygons(mesh.positions.tolist(), triangles.tolist(), all_triangles=True)
     corners = [set(t) for t in triangles.tolist()]
@@ -121,7 +142,10 @@ def self_intersections(mesh: Mesh) -> dict:
     if not pairs:
         return {"pairs": 0}
     touched = mesh.positions[triangles[np.unique(pairs)].ravel()]
-    return {"pairs": len(pairs), "bounds_mm": [touched.min(axis=0).round(1).tolist(), touched.max(axis=0).round(1).tolist()]}
+    return {
+        "pairs": len(pairs),
+        "bounds_mm": [touched.min(axis=0).round(1).tolist(), touched.max(axis=0).round(1).tolist()],
+    }
 
 
 def summary(t: Topology) -> dict:
@@ -146,7 +170,9 @@ def as_text(facts: dict) -> str:
         lines.append(f"{when}: " + ", ".join(f"{key} {value}" for key, value in facts[when].items()))
     lines += ["cap: " + ", ".join(f"{key} {value}" for key, value in cap.items()) for cap in facts["caps"]]
     if "self_intersections" in facts:
-        lines.append("self-intersections: " + ", ".join(f"{key} {value}" for key, value in facts["self_intersections"].items()))
+        lines.append(
+            "self-intersections: " + ", ".join(f"{key} {value}" for key, value in facts["self_intersections"].items())
+        )
     lines.append("closed" if facts["after"]["closed_manifold"] else "NOT closed: light would leak")
     return "\n".join(lines)
 

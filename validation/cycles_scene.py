@@ -28,12 +28,13 @@ import tempfile
 import time
 from pathlib import Path
 
-import numpy as np
-
 import pictures
 import regions
 import scene_file
+from packages import need
 from scene_file import Scene, Triple
+
+np = need("numpy")
 
 # Blender's unit is one millimetre here: an intensity in W/sr that shines at metres is 1e6 as much at millimetres.
 MM2_PER_M2 = 1e6
@@ -67,18 +68,32 @@ def main() -> int:
 def parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scene", type=Path, help="scene file, such as target/validation/head.toml")
-    parser.add_argument("-o", "--output", type=Path, required=True, help="picture to write (.exr or .npy); facts go to the same name with .json")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        required=True,
+        help="picture to write (.exr or .npy); facts go to the same name with .json",
+    )
     parser.add_argument("--engine", choices=("cycles", "eevee"), default="cycles", help="[default cycles]")
     parser.add_argument("--model", choices=("walk", "skin", "volume"), default="walk", help="see above [default walk]")
     parser.add_argument("--samples", type=int, default=64, help="samples per pixel, all seeds together [default 64]")
-    parser.add_argument("--seeds", type=int, default=1, help="independent renders that the samples are divided among [default 1]")
+    parser.add_argument(
+        "--seeds", type=int, default=1, help="independent renders that the samples are divided among [default 1]"
+    )
     parser.add_argument("--seed", type=int, default=1, help="first seed [default 1]")
-    parser.add_argument("--size", type=size, default=(512, 512), metavar="WIDTHxHEIGHT", help="pixels [default 512x512]")
-    parser.add_argument("--bounces", type=int, help="longest path outside the walk [default 64; volume 1024, the most Cycles has]")
+    parser.add_argument(
+        "--size", type=size, default=(512, 512), metavar="WIDTHxHEIGHT", help="pixels [default 512x512]"
+    )
+    parser.add_argument(
+        "--bounces", type=int, help="longest path outside the walk [default 64; volume 1024, the most Cycles has]"
+    )
     parser.add_argument("--threads", type=int, default=0, help="threads [default 0: one per processor]")
     parser.add_argument("--png", action="store_true", help="write a PNG for the eye too")
     parser.add_argument("--exposure", type=float, default=1.0, help="factor on the PNG [default 1]")
-    parser.add_argument("--json", action="store_true", help="print one JSON object on stdout (wall_seconds: render call alone)")
+    parser.add_argument(
+        "--json", action="store_true", help="print one JSON object on stdout (wall_seconds: render call alone)"
+    )
     arguments = parser.parse_args()
     if min(arguments.samples, arguments.seeds, *arguments.size) < 1:
         parser.error("samples, seeds and size must be 1 or more")
@@ -93,11 +108,7 @@ def size(text: str) -> tuple[int, int]:
 
 
 def blender():
-    try:
-        import bpy
-    except ImportError as error:
-        raise SystemExit("the package bpy is missing: pip install -r validation/requirements.txt (Python 3.11)") from error
-    return bpy
+    return need("bpy")
 
 
 def z_up(v: Triple) -> Triple:
@@ -140,7 +151,9 @@ def walk_sockets(scene: Scene, model: str) -> dict:
     """Base colour and radius of the Principled BSDF."""
     colour = [cycles_colour(a) for a in scene.single_scattering_albedo]
     if model == "skin":
-        radius = [1.0 / (t * skin_radius_factor(c, scene.refractive_index)) for t, c in zip(scene.sigma_t_per_mm, colour)]
+        radius = [
+            1.0 / (t * skin_radius_factor(c, scene.refractive_index)) for t, c in zip(scene.sigma_t_per_mm, colour)
+        ]
     else:
         radius = [4.0 * math.pi / t for t in scene.sigma_t_per_mm]
     return {"base_colour": colour, "radius_mm": radius}
@@ -309,7 +322,9 @@ def render(bpy, arguments: argparse.Namespace, seed: int) -> tuple[np.ndarray, f
             path = Path(folder) / "render.exr"
             bpy.data.images["Render Result"].save_render(str(path))
             if not path.is_file():
-                raise SystemExit("Blender wrote no picture; EEVEE needs OpenGL or Vulkan, such as Mesa's under xvfb-run")
+                raise SystemExit(
+                    "Blender wrote no picture; EEVEE needs OpenGL or Vulkan, such as Mesa's under xvfb-run"
+                )
             return pictures.read(path), seconds
 
 
@@ -345,7 +360,9 @@ def make_report(bpy, scene: Scene, arguments: argparse.Namespace, seeds: list[np
 
 
 def as_text(report: dict) -> str:
-    lines = [f"{report['program']}: {report['scene']}, {report['samples_per_pixel']} samples, {report['wall_seconds']:.1f} s"]
+    lines = [
+        f"{report['program']}: {report['scene']}, {report['samples_per_pixel']} samples, {report['wall_seconds']:.1f} s"
+    ]
     for name in ("whole", "centre"):
         errors = report[f"{name}_standard_error"] or [math.nan] * 3
         lines.append(f"{name}: " + "  ".join(f"{m:.5f} ± {e:.5f}" for m, e in zip(report[name], errors)))

@@ -23,10 +23,11 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 import pictures
 import regions
+from packages import need
+
+np = need("numpy")
 
 HERE = Path(__file__).resolve().parent
 TRIMMED = 1e-3
@@ -67,12 +68,42 @@ def parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scene", type=Path, help="scene file, such as target/validation/head_environment.toml")
     parser.add_argument("--reference", type=Path, help="converged picture that runs without @ are compared with")
-    parser.add_argument("--run", dest="run_texts", action="append", required=True, metavar="RUN", help="see above; may be given several times")
-    parser.add_argument("-o", "--output", type=Path, default=Path("target/validation/error_over_time"), help="name of the table and the plot, without ending [default target/validation/error_over_time]")
-    parser.add_argument("--folder", type=Path, default=Path("target/validation/error_over_time_pictures"), help="where the pictures go [default target/validation/error_over_time_pictures]")
-    parser.add_argument("--seed", type=int, default=101, help="seed of the runs; the reference must have others [default 101]")
-    parser.add_argument("--cutis", default=os.environ.get("CUTIS", "target/release/cutis"), help="cutis program [default $CUTIS, else target/release/cutis]")
-    parser.add_argument("--cutis-option", action="append", default=[], metavar="TEXT", help="further option for cutis, such as --cutis-option=--threads=1; may be given several times")
+    parser.add_argument(
+        "--run",
+        dest="run_texts",
+        action="append",
+        required=True,
+        metavar="RUN",
+        help="see above; may be given several times",
+    )
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        default=Path("target/validation/error_over_time"),
+        help="name of the table and the plot, without ending [default target/validation/error_over_time]",
+    )
+    parser.add_argument(
+        "--folder",
+        type=Path,
+        default=Path("target/validation/error_over_time_pictures"),
+        help="where the pictures go [default target/validation/error_over_time_pictures]",
+    )
+    parser.add_argument(
+        "--seed", type=int, default=101, help="seed of the runs; the reference must have others [default 101]"
+    )
+    parser.add_argument(
+        "--cutis",
+        default=os.environ.get("CUTIS", "target/release/cutis"),
+        help="cutis program [default $CUTIS, else target/release/cutis]",
+    )
+    parser.add_argument(
+        "--cutis-option",
+        action="append",
+        default=[],
+        metavar="TEXT",
+        help="further option for cutis, such as --cutis-option=--threads=1; may be given several times",
+    )
     parser.add_argument("--timeout", type=float, default=600.0, help="longest a run may take [s, default 600]")
     arguments = parser.parse_args()
     arguments.runs = [parse_run(parser, text, arguments.reference) for text in arguments.run_texts]
@@ -85,7 +116,9 @@ def parse_run(parser: argparse.ArgumentParser, text: str, reference: Path | None
     what, _, own = text.partition("@")
     parts = what.split(":")
     if len(parts) != 3 or parts[0] not in COMMANDS:
-        parser.error(f"--run {text}: must be PROGRAM:WAY:SAMPLES[,SAMPLES][@REFERENCE], program one of {', '.join(COMMANDS)}")
+        parser.error(
+            f"--run {text}: must be PROGRAM:WAY:SAMPLES[,SAMPLES][@REFERENCE], program one of {', '.join(COMMANDS)}"
+        )
     try:
         samples = [int(n) for n in parts[2].split(",")]
     except ValueError:
@@ -137,7 +170,9 @@ def measure(run: Run, samples: int, reference: np.ndarray, arguments: argparse.N
     except FileNotFoundError as error:
         raise SystemExit(f"{command[0]} is not there; for cutis: cargo build --release, or --cutis") from error
     except subprocess.TimeoutExpired as error:
-        raise SystemExit(f"{' '.join(command)} took more than {arguments.timeout:.0f} s; take fewer samples or --timeout") from error
+        raise SystemExit(
+            f"{' '.join(command)} took more than {arguments.timeout:.0f} s; take fewer samples or --timeout"
+        ) from error
     if done.returncode != 0:
         raise SystemExit(f"{' '.join(command)} ended with status {done.returncode}:\n{done.stderr.strip()}")
     report = json.loads(done.stdout.strip().splitlines()[-1] if run.program != "cutis" else done.stdout)
@@ -189,12 +224,8 @@ def as_line(row: dict) -> str:
 
 
 def plot(rows: list[dict], path: Path) -> None:
-    try:
-        import matplotlib
-    except ImportError as error:
-        raise SystemExit("the package matplotlib is missing: pip install -r validation/requirements.txt") from error
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
+    need("matplotlib").use("Agg")
+    pyplot = need("matplotlib.pyplot")
 
     figure, axes = pyplot.subplots(figsize=(7.0, 5.0))
     for name in dict.fromkeys((row["program"], row["way"], row["reference"]) for row in rows):

@@ -11,7 +11,10 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import numpy as np
+from packages import need
+
+np = need("numpy")
+
 
 Corner = tuple[int, "int | None"]
 

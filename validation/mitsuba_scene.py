@@ -12,12 +12,13 @@ import sys
 import time
 from pathlib import Path
 
-import numpy as np
-
 import pictures
 import regions
 import scene_file
+from packages import need
 from scene_file import Scene
+
+np = need("numpy")
 
 # Roulette starts this deep in absorbing media: 5 to 16 give the least variance for the time on skin1. A medium that absorbs
 # nothing never loses weight, so roulette would add noise only.
@@ -54,24 +55,65 @@ def main() -> int:
 def parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("scene", type=Path, help="scene file, such as target/validation/sphere.toml")
-    parser.add_argument("-o", "--output", type=Path, required=True, help="picture to write (.exr or .npy); regions go to the same name with .json")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        required=True,
+        help="picture to write (.exr or .npy); regions go to the same name with .json",
+    )
     parser.add_argument("--samples", type=int, default=256, help="samples per pixel, all seeds together [default 256]")
-    parser.add_argument("--seeds", type=int, default=4, help="independent renders that the samples are divided among [default 4]")
+    parser.add_argument(
+        "--seeds", type=int, default=4, help="independent renders that the samples are divided among [default 4]"
+    )
     parser.add_argument("--seed", type=int, default=1, help="first seed [default 1]")
-    parser.add_argument("--size", type=size, default=(128, 128), metavar="WIDTHxHEIGHT", help="pixels [default 128x128]")
-    parser.add_argument("--interface", choices=("rough", "smooth", "matched"), default="rough", help="rough: Beckmann with the scene's roughness; smooth: polished, lights are then found by chance only; matched: no interface at all [default rough]")
+    parser.add_argument(
+        "--size", type=size, default=(128, 128), metavar="WIDTHxHEIGHT", help="pixels [default 128x128]"
+    )
+    parser.add_argument(
+        "--interface",
+        choices=("rough", "smooth", "matched"),
+        default="rough",
+        help="rough: Beckmann with the scene's roughness; smooth: polished, lights are then found by chance only; matched: no interface at all [default rough]",
+    )
     parser.add_argument("--roughness", type=float, help="Beckmann roughness instead of the scene's [0.01 to 1]")
-    parser.add_argument("--mesh", type=Path, help="OBJ in mm instead of the scene's, such as target/validation/sphere_flat.obj")
+    parser.add_argument(
+        "--mesh", type=Path, help="OBJ in mm instead of the scene's, such as target/validation/sphere_flat.obj"
+    )
     parser.add_argument("--no-medium", action="store_true", help="clear inside: tests the interface alone")
     parser.add_argument("--max-depth", type=int, default=-1, help="longest path [default -1: any]")
-    parser.add_argument("--roulette-depth", type=int, help=f"depth at which roulette starts [default {ROULETTE_DEPTH}; {ROULETTE_DEPTH_WHITE} without absorption]")
-    parser.add_argument("--scale", type=float, default=1.0, help="Mitsuba units per mm: lengths times this, coefficients divided by it [default 1]")
-    parser.add_argument("--variant", default="llvm_ad_rgb", help="Mitsuba variant; scalar_rgb needs no LLVM library [default llvm_ad_rgb]")
-    parser.add_argument("--warm-up", action="store_true", help="render one sample first, so that the time holds no compilation")
+    parser.add_argument(
+        "--roulette-depth",
+        type=int,
+        help=f"depth at which roulette starts [default {ROULETTE_DEPTH}; {ROULETTE_DEPTH_WHITE} without absorption]",
+    )
+    parser.add_argument(
+        "--scale",
+        type=float,
+        default=1.0,
+        help="Mitsuba units per mm: lengths times this, coefficients divided by it [default 1]",
+    )
+    parser.add_argument(
+        "--offset",
+        type=float,
+        default=0.0,
+        metavar="MM",
+        help="move everything along x: far from the origin single precision bites [mm, default 0]",
+    )
+    parser.add_argument(
+        "--variant",
+        default="llvm_ad_rgb",
+        help="Mitsuba variant; scalar_rgb needs no LLVM library [default llvm_ad_rgb]",
+    )
+    parser.add_argument(
+        "--warm-up", action="store_true", help="render one sample first, so that the time holds no compilation"
+    )
     parser.add_argument("--only-mean", action="store_true", help="write no picture per seed")
     parser.add_argument("--png", action="store_true", help="write a PNG for the eye too")
     parser.add_argument("--exposure", type=float, default=1.0, help="factor on the PNG [default 1]")
-    parser.add_argument("--json", action="store_true", help="print one JSON object on stdout (wall_seconds: render time alone)")
+    parser.add_argument(
+        "--json", action="store_true", help="print one JSON object on stdout (wall_seconds: render time alone)"
+    )
     arguments = parser.parse_args()
     if min(arguments.samples, arguments.seeds, *arguments.size) < 1:
         parser.error("samples, seeds and size must be 1 or more")
@@ -85,10 +127,7 @@ def size(text: str) -> tuple[int, int]:
 
 def mitsuba(variant: str):
     """The module with its variant set."""
-    try:
-        import mitsuba as mi
-    except ImportError as error:
-        raise SystemExit("the package mitsuba is missing: pip install -r validation/requirements.txt") from error
+    mi = need("mitsuba")
     try:
         mi.set_variant(variant)
         mi.Float(0.0) + 1.0  # fails here, not in the middle of a render, without the LLVM library
@@ -102,6 +141,10 @@ def describe(mi, scene: Scene, arguments: argparse.Namespace, width: int, height
     """The scene as Mitsuba's dictionary."""
     transform = mi.ScalarTransform4f
     scale = arguments.scale
+
+    def placed(point_mm: scene_file.Triple) -> list[float]:
+        return [(point_mm[0] + arguments.offset) * scale, point_mm[1] * scale, point_mm[2] * scale]
+
     white = max(scene.sigma_a_per_mm) == 0.0
     depth = arguments.roulette_depth or (ROULETTE_DEPTH_WHITE if white else ROULETTE_DEPTH)
     mesh = arguments.mesh or scene.mesh
@@ -111,7 +154,7 @@ def describe(mi, scene: Scene, arguments: argparse.Namespace, width: int, height
     body = {
         "type": "obj",
         "filename": str(mesh),
-        "to_world": transform().scale(units),
+        "to_world": transform().translate([arguments.offset * scale, 0, 0]).scale(units),
         # The file's own normals: smooth or flat, as cutis reads them.
         "face_normals": False,
         "bsdf": interface(scene, arguments),
@@ -120,7 +163,12 @@ def describe(mi, scene: Scene, arguments: argparse.Namespace, width: int, height
         body["interior"] = medium(scene, scale)
     description = {
         "type": "scene",
-        "integrator": {"type": "volpathmis", "max_depth": arguments.max_depth, "rr_depth": depth, "hide_emitters": True},
+        "integrator": {
+            "type": "volpathmis",
+            "max_depth": arguments.max_depth,
+            "rr_depth": depth,
+            "hide_emitters": True,
+        },
         "sensor": {
             "type": "perspective",
             "fov": scene.vertical_fov_degrees,
@@ -128,11 +176,18 @@ def describe(mi, scene: Scene, arguments: argparse.Namespace, width: int, height
             "near_clip": 1.0 * scale,
             "far_clip": 1e5 * scale,
             "to_world": transform().look_at(
-                origin=[x * scale for x in scene.camera_position_mm],
-                target=[x * scale for x in scene.camera_look_at_mm],
+                origin=placed(scene.camera_position_mm),
+                target=placed(scene.camera_look_at_mm),
                 up=[0, 1, 0],
             ),
-            "film": {"type": "hdrfilm", "width": width, "height": height, "pixel_format": "rgba", "component_format": "float32", "rfilter": {"type": "box"}},
+            "film": {
+                "type": "hdrfilm",
+                "width": width,
+                "height": height,
+                "pixel_format": "rgba",
+                "component_format": "float32",
+                "rfilter": {"type": "box"},
+            },
             "sampler": {"type": "independent"},
         },
         "body": body,
@@ -140,7 +195,7 @@ def describe(mi, scene: Scene, arguments: argparse.Namespace, width: int, height
     for number, light in enumerate(scene.lights):
         description[f"light_{number}"] = {
             "type": "sphere",
-            "center": [x * scale for x in light.position_mm],
+            "center": placed(light.position_mm),
             "radius": light.radius_mm * scale,
             # Lengths are scaled, radiance is not.
             "emitter": {"type": "area", "radiance": {"type": "rgb", "value": list(light.radiance())}},
@@ -156,7 +211,12 @@ def interface(scene: Scene, arguments: argparse.Namespace) -> dict:
     indices = {"int_ior": scene.refractive_index, "ext_ior": 1.0}
     if arguments.interface == "smooth":
         return {"type": "dielectric", **indices}
-    return {"type": "roughdielectric", "distribution": "beckmann", "alpha": arguments.roughness or scene.roughness, **indices}
+    return {
+        "type": "roughdielectric",
+        "distribution": "beckmann",
+        "alpha": arguments.roughness or scene.roughness,
+        **indices,
+    }
 
 
 def medium(scene: Scene, scale: float) -> dict:
@@ -173,7 +233,9 @@ def medium(scene: Scene, scale: float) -> dict:
 
 def environment(mi, scene: Scene) -> dict:
     """In Mitsuba the middle of the map lies towards +Z; half a turn puts it towards -Z, where cutis has it."""
-    picture = pictures.read(scene.environment.path)[..., :3] * np.array(scene.environment.radiance_scale, dtype=np.float32)
+    picture = pictures.read(scene.environment.path)[..., :3] * np.array(
+        scene.environment.radiance_scale, dtype=np.float32
+    )
     if np.ptp(picture.reshape(-1, 3), axis=0).max() == 0.0:
         return {"type": "constant", "radiance": {"type": "rgb", "value": [float(x) for x in picture[0, 0]]}}
     return {
@@ -187,7 +249,9 @@ def render(mi, loaded, samples: int, seed: int) -> np.ndarray:
     return np.array(mi.render(loaded, spp=samples, seed=seed), dtype=np.float32)
 
 
-def make_report(mi, arguments: argparse.Namespace, scene: Scene, seeds: list[np.ndarray], per_seed: int, wall_seconds: float) -> dict:
+def make_report(
+    mi, arguments: argparse.Namespace, scene: Scene, seeds: list[np.ndarray], per_seed: int, wall_seconds: float
+) -> dict:
     """Everything that says how the picture was made, and its means."""
     mask = regions.common_mask(seeds)
     kept = regions.tiles_with_enough(mask)
@@ -200,6 +264,7 @@ def make_report(mi, arguments: argparse.Namespace, scene: Scene, seeds: list[np.
         "medium": not arguments.no_medium,
         "mesh": (arguments.mesh or scene.mesh).name,
         "scale": arguments.scale,
+        "offset_mm": arguments.offset,
         "width": arguments.size[0],
         "height": arguments.size[1],
         "samples_per_pixel": per_seed * arguments.seeds,
@@ -209,7 +274,12 @@ def make_report(mi, arguments: argparse.Namespace, scene: Scene, seeds: list[np.
         "output": str(arguments.output),
         **summaries(seeds, mask),
         "tiles": [
-            {"row": int(t // regions.GRID), "column": int(t % regions.GRID), "mean": tiles.means[i].tolist(), "standard_error": regions.number_or_null(tiles.standard_errors[i])}
+            {
+                "row": int(t // regions.GRID),
+                "column": int(t % regions.GRID),
+                "mean": tiles.means[i].tolist(),
+                "standard_error": regions.number_or_null(tiles.standard_errors[i]),
+            }
             for i, t in enumerate(kept)
         ],
     }
@@ -219,17 +289,23 @@ def summaries(seeds: list[np.ndarray], mask: np.ndarray) -> dict:
     """Mean radiance of all that is covered, outlines included, and of the middle eighth of the picture."""
     height, width = mask.shape
     rows, columns = (slice(n // 2 - n // 16, n // 2 + n // 16) for n in (height, width))
-    whole = np.array([s[..., :3].sum(axis=(0, 1), dtype=np.float64) / max(s[..., 3].sum(dtype=np.float64), 1e-12) for s in seeds])
+    whole = np.array(
+        [s[..., :3].sum(axis=(0, 1), dtype=np.float64) / max(s[..., 3].sum(dtype=np.float64), 1e-12) for s in seeds]
+    )
     centre = np.array([s[rows, columns, :3].mean(axis=(0, 1), dtype=np.float64) for s in seeds])
     result = {}
     for name, values in (("whole", whole), ("centre", centre)):
         result[name] = values.mean(axis=0).tolist()
-        result[f"{name}_standard_error"] = (values.std(axis=0, ddof=1) / math.sqrt(len(seeds))).tolist() if len(seeds) > 1 else None
+        result[f"{name}_standard_error"] = (
+            (values.std(axis=0, ddof=1) / math.sqrt(len(seeds))).tolist() if len(seeds) > 1 else None
+        )
     return result
 
 
 def as_text(report: dict) -> str:
-    lines = [f"{report['program']}: {report['scene']}, {report['interface']} interface, {report['samples_per_pixel']} samples, {report['wall_seconds']:.1f} s"]
+    lines = [
+        f"{report['program']}: {report['scene']}, {report['interface']} interface, {report['samples_per_pixel']} samples, {report['wall_seconds']:.1f} s"
+    ]
     for name in ("whole", "centre"):
         errors = report[f"{name}_standard_error"] or [math.nan] * 3
         lines.append(f"{name}: " + "  ".join(f"{m:.5f} ± {e:.5f}" for m, e in zip(report[name], errors)))

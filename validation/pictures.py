@@ -8,12 +8,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
+from packages import need
 
-try:
-    import OpenEXR
-except ImportError as error:
-    raise SystemExit("the package OpenEXR is missing: pip install -r validation/requirements.txt") from error
+np = need("numpy")
+OpenEXR = need("OpenEXR")
 
 
 def read(path: Path | str) -> np.ndarray:
@@ -54,10 +52,7 @@ def write(path: Path | str, picture: np.ndarray) -> None:
 
 def write_png(path: Path | str, picture: np.ndarray, exposure: float = 1.0) -> None:
     """Writes sRGB, clipped, for looking at only."""
-    try:
-        from matplotlib.image import imsave
-    except ImportError as error:
-        raise SystemExit("the package matplotlib is missing: pip install -r validation/requirements.txt") from error
+    imsave = need("matplotlib.image").imsave
     linear = np.clip(picture[..., :3] * exposure, 0.0, 1.0)
     # IEC 61966-2-1.
     encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)

@@ -11,12 +11,13 @@ import shutil
 import sys
 from pathlib import Path
 
-import numpy as np
-
 import close_head
 import mesh_file
 import pictures
 from mesh_file import Mesh
+from packages import need
+
+np = need("numpy")
 
 HERE = Path(__file__).resolve().parent
 SPHERE_RADIUS_MM = 10.0
@@ -43,14 +44,22 @@ def main() -> int:
     if scan.is_file():
         close_head.close(scan, output / "head.obj", close_head.MILLIMETRES_PER_UNIT)
     else:
-        print(f"SKIPPED: {scan} is not there (CUTIS_ASSETS); the scenes of the head cannot be rendered", file=sys.stderr)
+        print(
+            f"SKIPPED: {scan} is not there (CUTIS_ASSETS); the scenes of the head cannot be rendered", file=sys.stderr
+        )
     print(f"scenes and their files are in {output}")
     return 0
 
 
 def parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("-o", "--output", type=Path, default=HERE.parent / "target/validation", help="folder to write [default: target/validation]")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        default=HERE.parent / "target/validation",
+        help="folder to write [default: target/validation]",
+    )
     parser.add_argument("--longitudes", type=int, default=128, help="quads around the sphere [default 128]")
     parser.add_argument("--latitudes", type=int, default=64, help="quads from pole to pole [default 64]")
     return parser.parse_args()
@@ -78,10 +87,20 @@ def sphere(longitudes: int, latitudes: int) -> Mesh:
     for row in range(1, latitudes):
         polar = math.pi * row / latitudes
         ring = [2.0 * math.pi * column / longitudes for column in range(longitudes)]
-        rows.append([tuple(SPHERE_RADIUS_MM * x for x in (math.sin(polar) * math.sin(a), math.cos(polar), math.sin(polar) * math.cos(a))) for a in ring])
+        rows.append(
+            [
+                tuple(
+                    SPHERE_RADIUS_MM * x
+                    for x in (math.sin(polar) * math.sin(a), math.cos(polar), math.sin(polar) * math.cos(a))
+                )
+                for a in ring
+            ]
+        )
     rows.append([(0.0, -SPHERE_RADIUS_MM, 0.0)])
     start = np.cumsum([0] + [len(row) for row in rows])
-    uvs = [(column / longitudes, 1.0 - row / latitudes) for row in range(latitudes + 1) for column in range(longitudes + 1)]
+    uvs = [
+        (column / longitudes, 1.0 - row / latitudes) for row in range(latitudes + 1) for column in range(longitudes + 1)
+    ]
 
     def corner(row: int, column: int) -> tuple[int, int]:
         position = int(start[row]) + (column % longitudes if len(rows[row]) > 1 else 0)

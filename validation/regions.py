@@ -12,13 +12,14 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 import pictures
+from packages import need
+
+np = need("numpy")
 
 GRID = 8
 FULL_COVERAGE = 0.999  # pixels at outlines mix with the background, by filters that differ
-LEAST_COVERED = 0.02  # tiles with less of their area covered say nothing
+LEAST_COVERED = 0.25  # tiles with less of their area covered have too few pixels to say anything
 
 
 @dataclass
@@ -27,6 +28,7 @@ class Regions:
 
     means: np.ndarray
     standard_errors: np.ndarray
+    seeds: int
 
 
 def main() -> int:
@@ -45,10 +47,29 @@ def main() -> int:
 
 def parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--first", nargs="+", type=Path, required=True, metavar="PICTURE", help="EXR or NPY; several seeds of one picture may be given")
-    parser.add_argument("--second", nargs="+", type=Path, required=True, metavar="PICTURE", help="the same of the other program; relative differences are (first - second) / second")
+    parser.add_argument(
+        "--first",
+        nargs="+",
+        type=Path,
+        required=True,
+        metavar="PICTURE",
+        help="EXR or NPY; several seeds of one picture may be given",
+    )
+    parser.add_argument(
+        "--second",
+        nargs="+",
+        type=Path,
+        required=True,
+        metavar="PICTURE",
+        help="the same of the other program; relative differences are (first - second) / second",
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON object instead of a table")
-    parser.add_argument("--fail-above", type=float, metavar="FRACTION", help="end with status 1 if the largest relative difference is above this [fraction; default: never]")
+    parser.add_argument(
+        "--fail-above",
+        type=float,
+        metavar="FRACTION",
+        help="end with status 1 if the largest relative difference is above this [fraction; default: never]",
+    )
     return parser.parse_args()
 
 
@@ -78,7 +99,10 @@ def tile_means(picture: np.ndarray, mask: np.ndarray, kept: np.ndarray) -> np.nd
     """Mean radiance of the masked pixels of each kept tile, (tiles, 3)."""
     numbers = tile_numbers(mask.shape)[mask]
     count = np.bincount(numbers, minlength=GRID * GRID)[kept]
-    sums = [np.bincount(numbers, weights=picture[..., c][mask].astype(np.float64), minlength=GRID * GRID)[kept] for c in range(3)]
+    sums = [
+        np.bincount(numbers, weights=picture[..., c][mask].astype(np.float64), minlength=GRID * GRID)[kept]
+        for c in range(3)
+    ]
     return np.stack(sums, axis=-1) / count[:, None]
 
 
@@ -86,8 +110,8 @@ def of_pictures(seeds: list[np.ndarray], mask: np.ndarray, kept: np.ndarray) -> 
     """Means over seeds, and from their spread the standard errors."""
     per_seed = np.stack([tile_means(picture, mask, kept) for picture in seeds])
     if len(seeds) == 1:
-        return Regions(per_seed[0], np.full_like(per_seed[0], math.nan))
-    return Regions(per_seed.mean(axis=0), per_seed.std(axis=0, ddof=1) / math.sqrt(len(seeds)))
+        return Regions(per_seed[0], np.full_like(per_seed[0], math.nan), 1)
+    return Regions(per_seed.mean(axis=0), per_seed.std(axis=0, ddof=1) / math.sqrt(len(seeds)), len(seeds))
 
 
 def compare(a: Regions, b: Regions, mask: np.ndarray, kept: np.ndarray) -> dict:
@@ -117,11 +141,20 @@ def compare(a: Regions, b: Regions, mask: np.ndarray, kept: np.ndarray) -> dict:
         "whole_relative_difference": ((whole_a - whole_b) / whole_b).tolist(),
         "root_mean_square_relative_difference": float(np.sqrt((relative**2).mean())),
         "largest_relative_difference": float(np.abs(relative).max()),
-        "largest_is_in": {"row": int(kept[worst[0]] // GRID), "column": int(kept[worst[0]] % GRID), "channel": "RGB"[worst[1]]},
+        "largest_is_in": {
+            "row": int(kept[worst[0]] // GRID),
+            "column": int(kept[worst[0]] % GRID),
+            "channel": "RGB"[worst[1]],
+        },
         "largest_in_standard_errors": number_or_null(sigmas[worst]),
-        # Averages to 1 where only noise differs (few seeds make it larger: Student's t).
         "mean_square_in_standard_errors": number_or_null((sigmas**2).mean()),
+        "mean_square_expected_of_noise": expected_mean_square(a.seeds + b.seeds - 2),
     }
+
+
+def expected_mean_square(degrees_of_freedom: int) -> float | None:
+    """Mean square of Student's t: a little above 1, since the standard errors are themselves estimates."""
+    return degrees_of_freedom / (degrees_of_freedom - 2) if degrees_of_freedom > 2 else None
 
 
 def number_or_null(value: np.ndarray | float) -> list | float | None:
@@ -130,25 +163,47 @@ def number_or_null(value: np.ndarray | float) -> list | float | None:
 
 
 def as_text(report: dict) -> str:
-    lines = ["row col  pixels   first R G B             second R G B            difference % R G B       in standard errors"]
+    lines = [
+        "row col  pixels   first R G B             second R G B            difference % R G B       in standard errors"
+    ]
     for t in report["tiles"]:
         a, b, d = t["first"], t["second"], t["relative_difference"]
         ea, eb = t["first_standard_error"], t["second_standard_error"]
-        sigmas = "-" if ea is None or eb is None else " ".join(f"{(x - y) / max(math.hypot(e, f), 1e-12):+5.1f}" for x, y, e, f in zip(a, b, ea, eb))
+        sigmas = (
+            "-"
+            if ea is None or eb is None
+            else " ".join(f"{(x - y) / max(math.hypot(e, f), 1e-12):+5.1f}" for x, y, e, f in zip(a, b, ea, eb))
+        )
         lines.append(
-            f"{t['row']:3} {t['column']:3} {t['pixels']:7}   " + " ".join(f"{x:7.5f}" for x in a) + "   " + " ".join(f"{x:7.5f}" for x in b)
-            + "   " + " ".join(f"{100 * x:+7.2f}" for x in d) + "   " + sigmas
+            f"{t['row']:3} {t['column']:3} {t['pixels']:7}   "
+            + " ".join(f"{x:7.5f}" for x in a)
+            + "   "
+            + " ".join(f"{x:7.5f}" for x in b)
+            + "   "
+            + " ".join(f"{100 * x:+7.2f}" for x in d)
+            + "   "
+            + sigmas
         )
     whole = " ".join(f"{100 * x:+.3f}" for x in report["whole_relative_difference"])
     where = report["largest_is_in"]
     lines.append(f"all pixels: difference {whole} %")
     lines.append(
         f"largest relative difference {100 * report['largest_relative_difference']:.2f} % in row {where['row']} column {where['column']} {where['channel']}"
-        + ("" if report["largest_in_standard_errors"] is None else f" ({report['largest_in_standard_errors']:.1f} standard errors)")
+        + (
+            ""
+            if report["largest_in_standard_errors"] is None
+            else f" ({report['largest_in_standard_errors']:.1f} standard errors)"
+        )
         + f"; root mean square {100 * report['root_mean_square_relative_difference']:.2f} %"
     )
     if report["mean_square_in_standard_errors"] is not None:
-        lines.append(f"mean square difference in standard errors {report['mean_square_in_standard_errors']:.2f} (1: only noise differs)")
+        expected = report["mean_square_expected_of_noise"]
+        noise = (
+            "too few seeds to say what noise would give" if expected is None else f"noise alone gives {expected:.2f}"
+        )
+        lines.append(
+            f"mean square difference in standard errors {report['mean_square_in_standard_errors']:.2f}; {noise}"
+        )
     return "\n".join(lines)
 
 

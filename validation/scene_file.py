@@ -137,7 +137,9 @@ def _only(path: Path, name: str, table: dict) -> None:
 def _file(path: Path, text: str) -> Path:
     found = path.parent / text
     if not found.is_file():
-        raise SystemExit(f"{path} names {text}, which is not beside it; run `python validation/prepare.py` (the head needs CUTIS_ASSETS)")
+        raise SystemExit(
+            f"{path} names {text}, which is not beside it; run `python validation/prepare.py` (the head needs CUTIS_ASSETS)"
+        )
     return found
 
 

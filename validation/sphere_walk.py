@@ -11,9 +11,10 @@ import math
 import sys
 from pathlib import Path
 
-import numpy as np
-
 import scene_file
+from packages import need
+
+np = need("numpy")
 
 ROULETTE_WEIGHT = 1e-3  # below it a walk goes on with a chance of one in ten and ten times the weight
 ROULETTE_CHANCE = 0.1
@@ -26,8 +27,21 @@ def main() -> int:
     result = []
     for channel in range(3):
         random = np.random.default_rng([arguments.seed, channel])
-        escaped = walk(scene.sigma_t_per_mm[channel], scene.single_scattering_albedo[channel], index, arguments.radius_mm, arguments.walks, random)
-        result.append({"channel": "RGB"[channel], "reflectance": escaped.mean(), "standard_error": escaped.std() / math.sqrt(len(escaped))})
+        escaped = walk(
+            scene.sigma_t_per_mm[channel],
+            scene.single_scattering_albedo[channel],
+            index,
+            arguments.radius_mm,
+            arguments.walks,
+            random,
+        )
+        result.append(
+            {
+                "channel": "RGB"[channel],
+                "reflectance": escaped.mean(),
+                "standard_error": escaped.std() / math.sqrt(len(escaped)),
+            }
+        )
     if arguments.json:
         print(json.dumps(result))
     else:
@@ -38,7 +52,12 @@ def main() -> int:
 def parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("scene", type=Path, help="scene file whose medium is taken")
-    parser.add_argument("--interface", choices=("smooth", "matched"), default="smooth", help="smooth: Fresnel with the scene's index; matched: none [default smooth]")
+    parser.add_argument(
+        "--interface",
+        choices=("smooth", "matched"),
+        default="smooth",
+        help="smooth: Fresnel with the scene's index; matched: none [default smooth]",
+    )
     parser.add_argument("--radius-mm", type=float, default=10.0, help="radius of the sphere [mm, default 10]")
     parser.add_argument("--walks", type=int, default=200_000, help="walks per channel [default 200000]")
     parser.add_argument("--seed", type=int, default=1, help="seed [default 1]")
@@ -46,7 +65,9 @@ def parse() -> argparse.Namespace:
     return parser.parse_args()
 
 
-def walk(sigma_t: float, albedo: float, index: float, radius: float, count: int, random: np.random.Generator) -> np.ndarray:
+def walk(
+    sigma_t: float, albedo: float, index: float, radius: float, count: int, random: np.random.Generator
+) -> np.ndarray:
     """Weight that leaves again, for each walk that arrives cosine-distributed from outside."""
     escaped = np.zeros(count)
     cos_outside = np.sqrt(1.0 - random.random(count))

@@ -9,8 +9,6 @@ import tempfile
 import unittest
 from pathlib import Path
 
-import numpy as np
-
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import close_head
@@ -22,6 +20,9 @@ import prepare
 import regions
 import scene_file
 import sphere_walk
+from packages import need
+
+np = need("numpy")
 
 
 class Meshes(unittest.TestCase):
@@ -86,7 +87,9 @@ class Pictures(unittest.TestCase):
         row, column = np.unravel_index(picture[..., 0].argmax(), picture.shape[:2])
         height, width = picture.shape[:2]
         azimuth, polar = ((column + 0.5) / width - 0.5) * 2 * math.pi, (row + 0.5) / height * math.pi
-        brightest = np.array([math.sin(polar) * math.sin(azimuth), math.cos(polar), -math.sin(polar) * math.cos(azimuth)])
+        brightest = np.array(
+            [math.sin(polar) * math.sin(azimuth), math.cos(polar), -math.sin(polar) * math.cos(azimuth)]
+        )
         wanted = np.array(prepare.LOBE_DIRECTION) / np.linalg.norm(prepare.LOBE_DIRECTION)
         # Half a texel's diagonal, rad.
         self.assertLess(math.acos(brightest @ wanted), 0.5 * math.hypot(math.pi / height, 2 * math.pi / width))

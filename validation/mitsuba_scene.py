@@ -71,6 +71,9 @@ def parse() -> argparse.Namespace:
         "--size", type=size, default=(128, 128), metavar="WIDTHxHEIGHT", help="pixels [default 128x128]"
     )
     parser.add_argument(
+        "--middle-only", action="store_true", help="draw the middle eighth of the picture alone, for its mean"
+    )
+    parser.add_argument(
         "--interface",
         choices=("rough", "smooth", "matched"),
         default="rough",
@@ -187,6 +190,7 @@ def describe(mi, scene: Scene, arguments: argparse.Namespace, width: int, height
                 "pixel_format": "rgba",
                 "component_format": "float32",
                 "rfilter": {"type": "box"},
+                **(middle(width, height) if arguments.middle_only else {}),
             },
             "sampler": {"type": "independent"},
         },
@@ -203,6 +207,14 @@ def describe(mi, scene: Scene, arguments: argparse.Namespace, width: int, height
     if scene.environment:
         description["environment"] = environment(mi, scene)
     return description
+
+
+def middle(width: int, height: int) -> dict:
+    """Mitsuba's words for the part of the picture that `summaries` calls the centre."""
+    if min(width, height) < 16:
+        raise SystemExit("--middle-only needs a picture of 16 x 16 at least")
+    x, y = (n // 2 - n // 16 for n in (width, height))
+    return {"crop_offset_x": x, "crop_offset_y": y, "crop_width": 2 * (width // 16), "crop_height": 2 * (height // 16)}
 
 
 def interface(scene: Scene, arguments: argparse.Namespace) -> dict:
@@ -288,7 +300,8 @@ def make_report(
 def summaries(seeds: list[np.ndarray], mask: np.ndarray) -> dict:
     """Mean radiance of all that is covered, outlines included, and of the middle eighth of the picture."""
     height, width = mask.shape
-    rows, columns = (slice(n // 2 - n // 16, n // 2 + n // 16) for n in (height, width))
+    # A picture of less than 16 pixels is itself the middle of a larger one.
+    rows, columns = (slice(n // 2 - n // 16, n // 2 + n // 16) if n >= 16 else slice(None) for n in (height, width))
     whole = np.array(
         [s[..., :3].sum(axis=(0, 1), dtype=np.float64) / max(s[..., 3].sum(dtype=np.float64), 1e-12) for s in seeds]
     )

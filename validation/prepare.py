@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -21,6 +22,7 @@ np = need("numpy")
 
 HERE = Path(__file__).resolve().parent
 SPHERE_RADIUS_MM = 10.0
+POLISHED_ROUGHNESS = 0.05
 ENVIRONMENT_WIDTH, ENVIRONMENT_HEIGHT = 512, 256
 # The environment: a dim surrounding and one broad bright lobe from the front, left and above, so wide that programs
 # which find it only by chance still converge.
@@ -40,6 +42,7 @@ def main() -> int:
     pictures.write(output / "lobe.exr", lobe_environment())
     for scene in sorted((HERE / "scenes").glob("*.toml")):
         shutil.copyfile(scene, output / scene.name)
+        write_polished(scene, output)
     scan = close_head.assets_folder() / "lee_perry_smith" / "LeePerrySmith.obj"
     if scan.is_file():
         close_head.close(scan, output / "head.obj", close_head.MILLIMETRES_PER_UNIT)
@@ -63,6 +66,15 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--longitudes", type=int, default=128, help="quads around the sphere [default 128]")
     parser.add_argument("--latitudes", type=int, default=64, help="quads from pole to pole [default 64]")
     return parser.parse_args()
+
+
+def write_polished(scene: Path, output: Path) -> None:
+    """The same scene with a nearly smooth surface, where programs without multiple scattering at the microfacets lose
+    next to nothing."""
+    text = scene.read_text()
+    polished = re.sub(r"(?m)^roughness = .*$", f"roughness = {POLISHED_ROUGHNESS}", text)
+    assert polished != text, f"{scene} gives no roughness"
+    (output / f"{scene.stem}_polished.toml").write_text(polished)
 
 
 def write_sphere(output: Path, normals: str, longitudes: int, latitudes: int) -> None:

@@ -22,7 +22,7 @@ np = need("numpy")
 
 # Roulette starts this deep in absorbing media: 5 to 16 give the least variance for the time on skin1. A medium that absorbs
 # nothing never loses weight, so roulette would add noise only.
-ROULETTE_DEPTH, ROULETTE_DEPTH_WHITE = 8, 1_000_000
+ROULETTE_DEPTH, ROULETTE_DEPTH_NEVER = 8, 1_000_000
 
 
 def main() -> int:
@@ -88,7 +88,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument(
         "--roulette-depth",
         type=int,
-        help=f"depth at which roulette starts [default {ROULETTE_DEPTH}; {ROULETTE_DEPTH_WHITE} without absorption]",
+        help=f"depth at which roulette starts [default {ROULETTE_DEPTH}; {ROULETTE_DEPTH_NEVER} without absorption or interface]",
     )
     parser.add_argument(
         "--scale",
@@ -148,8 +148,8 @@ def describe(mi, scene: Scene, arguments: argparse.Namespace, width: int, height
     def placed(point_mm: scene_file.Triple) -> list[float]:
         return [(point_mm[0] + arguments.offset) * scale, point_mm[1] * scale, point_mm[2] * scale]
 
-    white = max(scene.sigma_a_per_mm) == 0.0
-    depth = arguments.roulette_depth or (ROULETTE_DEPTH_WHITE if white else ROULETTE_DEPTH)
+    never = max(scene.sigma_a_per_mm) == 0.0 or arguments.interface == "matched"
+    depth = arguments.roulette_depth or (ROULETTE_DEPTH_NEVER if never else ROULETTE_DEPTH)
     mesh = arguments.mesh or scene.mesh
     if not mesh.is_file():
         raise SystemExit(f"{mesh} is not there")

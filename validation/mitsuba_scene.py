@@ -20,8 +20,9 @@ from scene_file import Scene
 
 np = need("numpy")
 
-# Roulette starts this deep in absorbing media: 5 to 16 give the least variance for the time on skin1. A medium that absorbs
-# nothing never loses weight, so roulette would add noise only.
+# Roulette starts this deep in absorbing media: 5 to 16 give the least variance for the time on skin1. A medium that
+# absorbs nothing never loses weight, so roulette would add noise only. Without an interface volpathmis is off with it: red
+# of the furnace falls by 0.7 % at depth 8; with one, depths 8 and 64 agree within 0.1 %.
 ROULETTE_DEPTH, ROULETTE_DEPTH_NEVER = 8, 1_000_000
 
 

@@ -111,18 +111,6 @@ impl Surface {
         (!self.interface.is_sharp()).then(|| self.interface.rough_density_per_sr(frame * from, frame * to))
     }
 
-    /// A direction of travel inside into which the surface may refract light from `light`, outside, with its density, 1/sr.
-    pub fn refract_once(&self, light: DVec3, random: &mut Random) -> Option<DVec3> {
-        let frame = self.frame();
-        Some(frame * self.interface.refract_once(frame.transpose() * light, random)?)
-    }
-
-    /// Density of [`Surface::refract_once`], 1/sr.
-    pub fn refraction_density_per_sr(&self, light: DVec3, inside: DVec3) -> f64 {
-        let frame = self.frame().transpose();
-        self.interface.refraction_density_per_sr(frame * light, frame * inside)
-    }
-
     /// Local axes, as columns.
     fn frame(&self) -> DMat3 {
         let (u, v) = self.normal.any_orthonormal_pair();

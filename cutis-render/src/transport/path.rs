@@ -7,12 +7,13 @@
 use super::body::{Body, Surface};
 use super::emitter::Draw;
 use super::emitter::Emitters;
+use super::interface::Interface;
 use super::random::Random;
 use super::walk::{Carried, Met, Scattering, Walk};
 use crate::RenderError;
 use cutis_scene::Scene;
 use cutis_scene::solids::{Meeting, NOWHERE, Ray64, Solids};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -21,10 +22,15 @@ const OUTSIDE_MAX: u32 = 256;
 /// Times that light may be thrown back by a surface from within.
 const INSIDE_MAX: u32 = 1_000_000;
 
-/// Share of directions towards the surface that are drawn evenly, lest a bent surface be missed.
-const EVEN: f64 = 0.15;
+/// Shares of directions that are drawn evenly, outwards and over all, lest a bent surface or another one be missed.
+const OUTWARDS: f64 = 0.2;
+const ANYWHERE: f64 = 0.1;
 /// Probability with which lamps are asked for however deep light is scattered.
-const ASK_AT_LEAST: f64 = 0.05;
+const ASK_AT_LEAST: f64 = 0.2;
+/// What the guessed surface is rougher than the one the path met: it may be bent.
+const BENT: f64 = 0.2;
+/// Cosine to the lamp from which on a surface counts as facing it.
+const FACING: f64 = 0.1;
 
 /// Everything that paths need to know.
 pub struct Transport<'a> {
@@ -36,6 +42,50 @@ pub struct Transport<'a> {
     pub emitters: Emitters<'a>,
     /// The scene itself.
     pub scene: &'a Scene,
+}
+
+/// A surface that may lie between scattered light and a lamp.
+struct Guess {
+    normal: DVec3,
+    interface: Interface,
+    /// Way to it, mm.
+    way_mm: f64,
+}
+
+impl Guess {
+    /// The tangent plane of the surface the path met last, if the lamp shines on it.
+    fn new(last: &Surface, draw: &Draw, at_mm: DVec3) -> Option<Self> {
+        let cos = last.normal.dot(draw.dir);
+        let depth_mm = (last.point.position_mm.as_dvec3() - at_mm).dot(last.normal);
+        let interface = Interface { roughness: last.interface.roughness + BENT, ..last.interface };
+        (cos > FACING && depth_mm > 0.0).then_some(Self { normal: last.normal, interface, way_mm: depth_mm })
+    }
+
+    fn frame(&self) -> DMat3 {
+        let (u, v) = self.normal.any_orthonormal_pair();
+        DMat3::from_cols(u, v, self.normal)
+    }
+
+    /// A direction against which light from `light` may come through it; now and then any direction outwards, or any at all,
+    /// where the guess is wrong.
+    fn draw(&self, light: DVec3, random: &mut Random) -> Option<DVec3> {
+        let kind = random.unit();
+        if kind < OUTWARDS + ANYWHERE {
+            let dir = random.direction();
+            let outwards = 1f64.copysign(dir.dot(self.normal));
+            return Some(if kind < OUTWARDS { dir * outwards } else { dir });
+        }
+        let frame = self.frame();
+        Some(-(frame * self.interface.refract_once(frame.transpose() * light, random)?))
+    }
+
+    /// The density of such directions, 1/sr.
+    fn density_per_sr(&self, light: DVec3, towards: DVec3) -> f64 {
+        let frame = self.frame().transpose();
+        let refracted = self.interface.refraction_density_per_sr(frame * light, frame * -towards);
+        let outwards = if towards.dot(self.normal) > 0.0 { OUTWARDS / (2.0 * PI) } else { 0.0 };
+        (1.0 - OUTWARDS - ANYWHERE) * refracted + outwards + ANYWHERE / (4.0 * PI)
+    }
 }
 
 /// What came along one path.
@@ -126,12 +176,14 @@ impl<'a> Transport<'a> {
     /// Light of one lamp that is refracted in and scattered along the path: how much of it `scattering` carries on.
     ///
     /// Asked at the surface, a lamp would nearly always be missed: the surface lets through what comes from a narrow
-    /// cone inside. Here the lamp is refracted by the surface that lies between, and a ray against that direction
-    /// finds where it comes in; what was guessed wrong, the weight makes good. Only light within `reach_mm` counts.
+    /// cone inside. Here the lamp is refracted by the surface that likely lies between: that through which the path came,
+    /// or, where that faces away, the one in the lamp's direction. A ray against the refracted direction finds where the light
+    /// comes in; what was guessed wrong, the weight makes good. Only light within `reach_mm` counts.
     fn lamps_through_surface(
         &self,
         walk: &Walk,
         reach_mm: f64,
+        last: &Surface,
         scattering: &Scattering,
         random: &mut Random,
     ) -> DVec3 {
@@ -145,23 +197,25 @@ impl<'a> Transport<'a> {
             let ray = Ray64 { origin_mm: at_mm, dir, from: NOWHERE };
             self.solids.way_out(&ray, reach_mm, &mut scattering.within.clone())
         };
-        // The surface in the lamp's direction tells how the light is likely refracted, and how much of it will arrive.
-        let guess = out(draw.dir);
+        let guess = Guess::new(last, &draw, at_mm).or_else(|| {
+            let met = out(draw.dir)?;
+            let surface = self.bodies[met.object as usize].surface(&self.solids, &met, draw.dir);
+            Some(Guess { normal: surface.normal, interface: surface.interface, way_mm: met.distance_mm })
+        });
+        // The deeper, the less comes through, and the less often it is asked for.
         let sigma_t = walk.tissue.core().sigma_t_per_mm().min_element();
-        let likely = guess.map_or(0.0, |m| (-sigma_t * m.distance_mm).exp()).max(ASK_AT_LEAST);
+        let likely = guess.as_ref().map_or(0.0, |guess| (-sigma_t * guess.way_mm).exp()).max(ASK_AT_LEAST);
         if random.unit() >= likely {
             return DVec3::ZERO;
         }
-        let guess = guess.map(|m| self.bodies[m.object as usize].surface(&self.solids, &m, draw.dir));
-        let (even, refracted) = if guess.is_some() { (EVEN, 1.0 - EVEN) } else { (1.0, 0.0) };
         let towards = match &guess {
-            Some(surface) if random.unit() >= even => surface.refract_once(draw.dir, random).map(|dir| -dir),
-            _ => Some(random.direction()),
+            Some(guess) => guess.draw(draw.dir, random),
+            None => Some(random.direction()),
         };
         let Some(towards) = towards else { return DVec3::ZERO };
         let Some(meeting) = out(towards) else { return DVec3::ZERO };
-        let there = guess.map_or(0.0, |surface| surface.refraction_density_per_sr(draw.dir, -towards));
-        let density = even / (4.0 * PI) + refracted * there;
+        let evenly = 1.0 / (4.0 * PI);
+        let density = guess.map_or(evenly, |guess| guess.density_per_sr(draw.dir, towards));
         let surface = self.bodies[meeting.object as usize].surface(&self.solids, &meeting, -towards);
         let origin_mm = surface.point.lifted_position_mm.as_dvec3();
         // The same part of the lamp, as seen from where its light comes in.
@@ -225,11 +279,11 @@ impl Path<'_, '_> {
         }
         self.entered = true;
         self.carried.scale(surface.film_inwards);
-        self.pass_through(meeting.object)
+        self.pass_through(meeting.object, surface)
     }
 
     /// Through the inside and out; false if nothing comes out.
-    fn pass_through(&mut self, object: u32) -> bool {
+    fn pass_through(&mut self, object: u32, mut last: Surface) -> bool {
         let transport = self.transport;
         let (solids, body) = (&transport.solids, &transport.bodies[object as usize]);
         let walk = Walk { solids, tissue: &body.tissue, object };
@@ -243,7 +297,8 @@ impl Path<'_, '_> {
                 self.random,
                 |scattering: &Scattering, random: &mut Random| {
                     events += 1;
-                    lamps += transport.lamps_through_surface(&walk, body.connection_mm, scattering, random);
+                    lamps +=
+                        transport.lamps_through_surface(&walk, body.connection_mm, &last, scattering, random);
                 },
             );
             self.sum.events += events;
@@ -263,6 +318,7 @@ impl Path<'_, '_> {
                 self.density_per_sr = surface.rough_density_per_sr(from, to);
                 return true;
             }
+            last = surface;
         }
         false
     }

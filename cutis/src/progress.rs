@@ -11,10 +11,19 @@ pub struct Bar {
 impl Bar {
     /// A bar on stderr, invisible when that is no terminal or when lines are wanted.
     pub fn new(verbose: u8) -> Self {
+        Self::named("", verbose)
+    }
+
+    /// A bar with a name before the pass, for one of several pieces of work.
+    pub fn named(name: &str, verbose: u8) -> Self {
         let target = if verbose == 0 { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
-        let style = ProgressStyle::with_template("{msg:16} {bar:40} {percent:>3} % {elapsed}")
+        let style = ProgressStyle::with_template("{prefix}{msg:16} {bar:40} {percent:>3} % {elapsed}")
             .expect("the template is well formed");
-        Self { bar: ProgressBar::with_draw_target(Some(0), target).with_style(style) }
+        Self {
+            bar: ProgressBar::with_draw_target(Some(0), target)
+                .with_style(style)
+                .with_prefix(name.to_owned()),
+        }
     }
 
     /// Takes the bar off the screen.

@@ -1,7 +1,7 @@
 //! Colours as FLIP compares them: from light to opponents, from opponents to a perceptually even space, and the
 //! distance there.
 
-use glam::{DMat3, DVec3, Mat3, Vec3};
+use glam::{DMat3, DVec3, Mat3, Vec2, Vec3};
 use std::sync::LazyLock;
 
 /// Exponent that compresses large distances (`q_c` in the paper).
@@ -76,7 +76,7 @@ impl Perceived {
     /// HyAB: along the lightness by streets, across it as the crow flies.
     fn compressed(&self, other: &Self) -> f32 {
         let d = self.0 - other.0;
-        (d.x.abs() + (d.y * d.y + d.z * d.z).sqrt()).powf(DISTANCE_EXPONENT)
+        (d.x.abs() + Vec2::new(d.y, d.z).length()).powf(DISTANCE_EXPONENT)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Edges and points: first and second derivatives of the lightness at the scale of the finest detail that is seen.
 
 use super::plane::Plane;
+use glam::Vec2;
 use rayon::prelude::*;
 
 /// Width of the filter in degrees (`w` in the paper): that of the eye's edge detectors.
@@ -53,7 +54,7 @@ impl FeatureFilter {
             let across = grey.filtered(derivative, &self.gaussian);
             let down = grey.filtered(&self.gaussian, derivative);
             let pixels = across.values.into_par_iter().zip(down.values);
-            pixels.map(|(x, y)| (x * x + y * y).sqrt()).collect::<Vec<f32>>()
+            pixels.map(|(x, y)| Vec2::new(x, y).length()).collect::<Vec<f32>>()
         };
         let (edges, points) = (magnitude(&self.first), magnitude(&self.second));
         edges.into_par_iter().zip(points).map(|(edge, point)| Features { edge, point }).collect()

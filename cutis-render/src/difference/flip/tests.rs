@@ -143,6 +143,7 @@ const EXPOSURES_BY_ITS_AUTHORS: [(f64, f64, u32); 6] = [
 const MEAN_TOLERANCE: f64 = 5e-5;
 const MAX_TOLERANCE: f64 = 1e-4;
 
+#[allow(clippy::print_stdout, reason = "`--nocapture` shows by how much")]
 fn assert_meets(found: &FlipMap, (mean, max): (f64, f64), what: &str) {
     println!("{what}: mean {:.7} ({:+.1e}), max {:.6}", found.mean, found.mean - mean, found.max);
     assert!((found.mean - mean).abs() < MEAN_TOLERANCE, "{what}: mean {} for {mean}", found.mean);

@@ -1,8 +1,9 @@
 //! How it is drawn: settings, prepared tables, passes, techniques and film, all on the CPU.
 //!
 //! The public act is [`Renderer::render`]: a [`cutis_scene::Scene`] and [`Settings`] in, a [`Frame`] of linear light
-//! out. [`film`] turns the frame into a picture.
+//! out. [`film`] turns the frame into a picture, [`difference`] says how far two of them are apart.
 
+pub mod difference;
 pub mod film;
 pub mod frame;
 pub mod passes;

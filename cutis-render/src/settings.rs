@@ -107,6 +107,16 @@ pub enum TechniqueName {
     Truth,
 }
 
+impl TechniqueName {
+    /// Every technique, in the order in which they are listed.
+    pub const ALL: &[TechniqueName] = &[TechniqueName::TextureSpace, TechniqueName::Truth];
+
+    /// Whether its pictures are estimated by chance, with a standard error.
+    pub fn is_estimated(self) -> bool {
+        self == TechniqueName::Truth
+    }
+}
+
 /// Operators that spread irradiance over the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Diffusion {
@@ -230,6 +240,17 @@ impl fmt::Display for TechniqueName {
     }
 }
 
+impl FromStr for TechniqueName {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        TechniqueName::ALL.iter().copied().find(|technique| technique.to_string() == name).ok_or_else(|| {
+            let names: Vec<_> = TechniqueName::ALL.iter().map(TechniqueName::to_string).collect();
+            format!("there is no technique '{name}'; there are {}", names.join(", "))
+        })
+    }
+}
+
 impl fmt::Display for Diffusion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -249,5 +270,14 @@ mod tests {
             assert_eq!(aov.to_string().parse(), Ok(aov));
         }
         assert!("blur6".parse::<Aov>().is_err());
+    }
+
+    #[test]
+    fn technique_names_are_read_back() {
+        for technique in TechniqueName::ALL {
+            assert_eq!(technique.to_string().parse(), Ok(*technique));
+        }
+        let refused = "raytrace".parse::<TechniqueName>().expect_err("unknown");
+        assert!(refused.contains("'raytrace'") && refused.contains("texture-space"), "{refused}");
     }
 }

@@ -33,6 +33,6 @@ pub use light::{Light, LightSample};
 pub use material::{ColourMap, Material, NormalMap, NormalSpace, ScalarMap, Scattering};
 pub use mesh::{Mesh, MorphTarget};
 pub use object::{Object, SurfacePoint};
-pub use read::{ColourSpace, ReadOptions, read_image, read_scene};
+pub use read::{ColourSpace, PictureFile, ReadOptions, read_image, read_picture, read_scene};
 pub use scene::Scene;
 pub use texture::{Texels, Texture};

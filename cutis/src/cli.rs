@@ -1,21 +1,22 @@
 //! The words of the command line and what they mean, as plain values. What they may be is checked in
 //! [`crate::job`].
 
+mod compare;
+mod diff;
 mod profile;
 
 use crate::talk;
 use clap::builder::PossibleValuesParser;
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
+pub use compare::CompareArgs;
 use cutis_render::film::ToneMapper;
 use cutis_render::{Aov, AovSpace, Diffusion, Settings, TechniqueName};
+pub use diff::DiffArgs;
 pub use profile::{METHODS, ProfileArgs};
 use std::fmt::Display;
 use std::path::PathBuf;
 use std::process::ExitCode;
-
-/// Techniques that can be chosen.
-pub const TECHNIQUES: [TechniqueName; 2] = [TechniqueName::TextureSpace, TechniqueName::Truth];
 
 /// Diffusion operators that can be chosen.
 pub const DIFFUSIONS: [Diffusion; 2] = [Diffusion::None, Diffusion::Separable];
@@ -41,6 +42,10 @@ pub struct Cli {
 pub enum Command {
     /// Render a picture of a scene, or of the built-in head
     Render(Box<RenderArgs>),
+    /// Render a scene with every technique and write a page with pictures, errors and times
+    Compare(Box<CompareArgs>),
+    /// Tell how far a picture is from a reference: RMSE, relative MSE, bias, FLIP
+    Diff(DiffArgs),
     /// Compute a diffusion profile, fit it by Gaussians, plot it, export it
     Profile(Box<ProfileArgs>),
     /// Simulate light in layered slabs by Monte Carlo
@@ -60,7 +65,7 @@ pub struct RenderArgs {
     #[arg(short, long, value_name = "FILE", default_value = "cutis.png")]
     pub output: PathBuf,
     /// Method that draws the picture
-    #[arg(long, value_name = "NAME", default_value_t = Settings::default().technique.to_string(), value_parser = names(TECHNIQUES))]
+    #[arg(long, value_name = "NAME", default_value_t = Settings::default().technique.to_string(), value_parser = names(TechniqueName::ALL))]
     pub technique: String,
     /// How light spreads under the surface; none: the surface is opaque
     #[arg(long, value_name = "NAME", default_value_t = Settings::default().diffusion.to_string(), value_parser = names(DIFFUSIONS))]

@@ -1,6 +1,6 @@
 //! A run that can begin: every value of the command line checked, every file that must be there looked for.
 
-use crate::cli::{AOV_SPACES, DIFFUSIONS, RenderArgs, TECHNIQUES};
+use crate::cli::{AOV_SPACES, DIFFUSIONS, RenderArgs};
 use crate::scene_source::SceneSource;
 use cutis_render::film::{Bloom, Checkpoint, Film, Format, check_output, layer_path};
 use cutis_render::{Aov, Settings};
@@ -68,7 +68,7 @@ fn settings(args: &RenderArgs) -> Result<Settings> {
         }
     }
     let settings = Settings {
-        technique: named("--technique", &args.technique, TECHNIQUES.map(|t| (t.to_string(), t)))?,
+        technique: args.technique.parse().map_err(|reason| miette!("--technique: {reason}"))?,
         diffusion: named("--diffusion", &args.diffusion, DIFFUSIONS.map(|d| (d.to_string(), d)))?,
         width,
         height,
@@ -148,7 +148,7 @@ fn head_detail(args: &RenderArgs) -> Result<HeadDetail> {
 }
 
 /// Finds a missing file before the work; the reader says everything else that may be wrong with it.
-fn must_exist(path: &Path) -> Result<()> {
+pub fn must_exist(path: &Path) -> Result<()> {
     if path.exists() || path.to_string_lossy().starts_with("assets:") {
         return Ok(());
     }
@@ -177,7 +177,8 @@ fn idle_wishes(args: &RenderArgs, format: Format) -> Vec<String> {
     idle.map(|(flag, _)| format!("{flag} has no effect: EXR files hold the radiance as rendered")).collect()
 }
 
-fn size(text: &str) -> Result<(u32, u32)> {
+/// Reads `--size`.
+pub fn size(text: &str) -> Result<(u32, u32)> {
     let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
     sides.ok_or_else(|| miette!("--size must be WIDTHxHEIGHT in pixels, such as 1024x1024, got '{text}'"))
 }
@@ -203,7 +204,7 @@ pub fn in_range(
 }
 
 /// A library's error is already one line that says what is wrong.
-fn refused(error: impl Display) -> miette::Report {
+pub fn refused(error: impl Display) -> miette::Report {
     miette!("{error}")
 }
 

@@ -14,6 +14,12 @@ pub fn peak_memory_mib() -> Option<f64> {
     parse_peak_kib(&status).map(|kib| kib / 1024.0)
 }
 
+/// Lets [`peak_memory_mib`] count from here on: 5 resets the high-water mark to what is held now (Linux, proc(5),
+/// `clear_refs`). Whether it did.
+pub fn forget_peak_memory() -> bool {
+    std::fs::write("/proc/self/clear_refs", "5").is_ok()
+}
+
 /// The line `VmHWM:   123456 kB` of Linux's process status; its "kB" are KiB (proc(5)).
 fn parse_peak_kib(status: &str) -> Option<f64> {
     let value = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

@@ -5,10 +5,13 @@
 //! stderr. Exit code 0: done; 1: finished, but a check failed; 2: could not run.
 
 mod cli;
+mod compare;
 mod completions;
+mod diff;
 mod job;
 mod layer_words;
 mod machine;
+mod measure;
 mod presets;
 mod profile;
 mod progress;
@@ -49,6 +52,8 @@ fn main() -> ExitCode {
 fn run(cli: &Cli) -> miette::Result<Outcome> {
     match &cli.command {
         Command::Render(args) => render::run(args, cli.verbose),
+        Command::Compare(args) => compare::run(args, cli.verbose),
+        Command::Diff(args) => diff::run(args),
         Command::Profile(args) => profile::run(args, cli.verbose),
         Command::Simulate(args) => simulate::run(args, cli.verbose),
         Command::Presets(args) => presets::run(args),

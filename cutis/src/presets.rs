@@ -1,11 +1,11 @@
 //! `cutis presets`: what ships inside.
 
-use crate::cli::{DIFFUSIONS, PresetsArgs, TECHNIQUES};
+use crate::cli::{DIFFUSIONS, PresetsArgs};
 use crate::{Outcome, talk};
 use cutis_optics::presets::{self, Preset};
 use cutis_optics::{Medium, RgbGaussianSum};
 use cutis_render::film::ToneMapper;
-use cutis_render::{Aov, Settings};
+use cutis_render::{Aov, Settings, TechniqueName};
 use miette::IntoDiagnostic;
 use serde::Serialize;
 use std::fmt::Write;
@@ -66,7 +66,7 @@ impl Inventory {
                 name: "studio",
                 description: "made by code, with key and rim light; around the built-in head and scenes without light",
             }],
-            techniques: TECHNIQUES.map(|t| t.to_string()).to_vec(),
+            techniques: TechniqueName::ALL.iter().map(ToString::to_string).collect(),
             diffusions: DIFFUSIONS.map(|d| d.to_string()).to_vec(),
             tone_mappers: ToneMapper::ALL.map(|t| t.to_string()).to_vec(),
             layers: Aov::all().iter().map(Aov::to_string).collect(),

@@ -11,11 +11,20 @@ pub struct Bar {
 impl Bar {
     /// A bar on stderr, invisible when that is no terminal or when lines are wanted.
     pub fn new(verbose: u8) -> Self {
+        Self::named("", verbose)
+    }
+
+    /// A bar with a name before the pass, for one of several pieces of work.
+    pub fn named(name: &str, verbose: u8) -> Self {
         let target = if verbose == 0 { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
         let style =
-            ProgressStyle::with_template("{msg:16} {bar:40} {percent:>3} % {elapsed}, {eta} left {prefix}")
+            ProgressStyle::with_template("{prefix}{msg:24} {bar:40} {percent:>3} % {elapsed}, {eta} left")
                 .expect("the template is well formed");
-        Self { bar: ProgressBar::with_draw_target(Some(0), target).with_style(style) }
+        Self {
+            bar: ProgressBar::with_draw_target(Some(0), target)
+                .with_style(style)
+                .with_prefix(name.to_owned()),
+        }
     }
 
     /// Takes the bar off the screen.
@@ -30,7 +39,6 @@ impl Progress for Bar {
         self.bar.reset();
         self.bar.set_length(steps);
         self.bar.set_message(pass.to_owned());
-        self.bar.set_prefix("");
     }
 
     fn advance(&self, steps: u64) {
@@ -38,6 +46,6 @@ impl Progress for Bar {
     }
 
     fn note(&self, words: &str) {
-        self.bar.set_prefix(words.to_owned());
+        self.bar.set_message(words.to_owned());
     }
 }

@@ -15,7 +15,7 @@ mod textures;
 use crate::{Camera, Environment, Light, Material, Mesh, Scene, SceneError};
 use std::path::{Path, PathBuf};
 
-pub use image::{ColourSpace, read_image};
+pub use image::{ColourSpace, PictureFile, read_image, read_picture};
 
 /// What the caller knows better than the file, mostly from the command line.
 #[derive(Debug, Clone, Default)]

@@ -55,7 +55,8 @@ impl Material {
         }
     }
 
-    fn preset(name: &str) -> Result<Self> {
+    /// A material that ships inside.
+    pub fn preset(name: &str) -> Result<Self> {
         let preset = presets::find(name).map_err(|error| {
             miette!(help = "cutis presets lists the names; a file of layers ends in .toml", "{error}")
         })?;

@@ -6,6 +6,7 @@ mod export;
 mod job;
 mod layer_file;
 mod material;
+mod of_scene;
 mod plot;
 mod radial;
 mod report;
@@ -24,6 +25,7 @@ pub use export::format_names;
 use job::Job;
 use material::Material;
 use miette::{IntoDiagnostic, Result, miette};
+pub use of_scene::figure_svg;
 use report::Report;
 use std::time::Instant;
 

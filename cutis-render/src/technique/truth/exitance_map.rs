@@ -85,7 +85,7 @@ impl ExitanceMap {
             samples += count;
             progress.advance(count);
             let noise = median_noise((0..size * size).map(|texel| estimator.texel(texel)));
-            progress.note(&format!("noise {:.2} %", 100.0 * noise));
+            progress.note(&format!("exitance, noise {:.2} %", 100.0 * noise));
             if samples >= SAMPLES_MIN && settings.target_error.is_some_and(|target| noise <= target) {
                 break;
             }

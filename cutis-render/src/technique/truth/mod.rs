@@ -70,7 +70,7 @@ fn expose(transport: &Transport, settings: &Settings, progress: &dyn Progress) -
         film.expose(transport, count);
         progress.advance(count);
         let noise = film.noise();
-        progress.note(&format!("noise {:.2} %", 100.0 * noise));
+        progress.note(&format!("paths, noise {:.2} %", 100.0 * noise));
         if film.samples() >= SAMPLES_MIN && settings.target_error.is_some_and(|target| noise <= target) {
             break;
         }

@@ -5,6 +5,9 @@
 
 mod exr;
 mod jpeg;
+mod picture;
+
+pub use picture::{PictureFile, read_picture};
 
 use super::file::read_bytes;
 use crate::texture::srgb_to_linear;
@@ -52,10 +55,7 @@ pub(crate) fn decode(
     space: ColourSpace,
     warnings: &mut Vec<String>,
 ) -> Result<Texture, String> {
-    // The decoders are other people's code that meets hostile bytes here. None is known to panic, but a picture
-    // program must not die of a texture, so a panic becomes an error as the last resort.
-    let decoded = catch_unwind(AssertUnwindSafe(|| decode_by_magic(bytes, space)));
-    let (texture, mended) = decoded.unwrap_or_else(|_| Err("the decoder gave up on it".to_owned()))?;
+    let (texture, mended) = guarded(|| decode_by_magic(bytes, space))?;
     if mended > 0 {
         warnings.push(format!(
             "{mended} texels of a {} × {} image are not finite numbers; NaN became 0, infinity 65504",
@@ -64,6 +64,12 @@ pub(crate) fn decode(
         ));
     }
     Ok(texture)
+}
+
+/// Runs a decoder. They are other people's code that meets hostile bytes here. None is known to panic, but a picture
+/// program must not die of a texture, so a panic becomes an error as the last resort.
+fn guarded<T>(decode: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(decode)).unwrap_or_else(|_| Err("the decoder gave up on it".to_owned()))
 }
 
 /// Decodes by the first bytes; also the number of texels that were mended.

@@ -51,28 +51,29 @@ impl PlotFile {
 
     /// Draws.
     pub fn render(&self, profiled: &Profiled) -> Result<Vec<u8>> {
-        register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
-            .map_err(|_| miette!("the font inside the program is broken"))?;
-        let figure = Figure::new(profiled);
         match self.kind {
-            Kind::Svg => Ok(svg(&figure)?.into_bytes()),
-            Kind::Png => png(&figure),
+            Kind::Svg => Ok(svg_of(profiled)?.into_bytes()),
+            Kind::Png => png_of(profiled),
         }
     }
 }
 
-fn svg(figure: &Figure) -> Result<String> {
+/// The figure as SVG.
+pub fn svg_of(profiled: &Profiled) -> Result<String> {
+    register_own_font()?;
     let mut text = String::new();
-    draw(figure, &SVGBackend::with_string(&mut text, SIZE).into_drawing_area(), 1)
+    draw(&Figure::new(profiled), &SVGBackend::with_string(&mut text, SIZE).into_drawing_area(), 1)
         .map_err(|error| miette!("the plot cannot be drawn: {error}"))?;
     Ok(text)
 }
 
-fn png(figure: &Figure) -> Result<Vec<u8>> {
+fn png_of(profiled: &Profiled) -> Result<Vec<u8>> {
+    register_own_font()?;
     let scale = DOTS_PER_POINT * OVERSAMPLING;
     let (width, height) = (SIZE.0 * scale, SIZE.1 * scale);
     let mut dots = vec![0; (3 * width * height) as usize];
-    draw(figure, &BitMapBackend::with_buffer(&mut dots, (width, height)).into_drawing_area(), scale)
+    let figure = Figure::new(profiled);
+    draw(&figure, &BitMapBackend::with_buffer(&mut dots, (width, height)).into_drawing_area(), scale)
         .map_err(|error| miette!("the plot cannot be drawn: {error}"))?;
     let large =
         RgbImage::from_raw(width, height, dots).ok_or_else(|| miette!("the plot has lost its size"))?;
@@ -81,4 +82,9 @@ fn png(figure: &Figure) -> Result<Vec<u8>> {
     let mut bytes = Cursor::new(Vec::new());
     picture.write_to(&mut bytes, ImageFormat::Png).into_diagnostic()?;
     Ok(bytes.into_inner())
+}
+
+fn register_own_font() -> Result<()> {
+    register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT)
+        .map_err(|_| miette!("the font inside the program is broken"))
 }

@@ -92,7 +92,7 @@ fn scene_files() {
             "`z` is not known",
         ),
         ("no-map", scene("[material]\nspecular = { gain = 1 }"), "key `material.specular.path`: is missing"),
-        ("roughness", scene("[material]\nroughness = 0"), "must be 0.01 to 1"),
+        ("roughness", scene("[material]\nroughness = -0.1"), "must be 0 to 1"),
         ("tissue", scene("[material]\npreset = \"a\"\nmedium = {}"), "only one can be the tissue"),
         (
             "medium",

@@ -78,7 +78,7 @@ pub(super) fn read(keys: &Keys, context: &mut Context) -> Result<Change, SceneEr
         albedo_mix: keys.number_in("albedo_mix", 0.0..=1.0)?,
         normal: normal(keys, context)?,
         rho_s: scalar(keys, "specular", 0.0..=10.0, ScalarMap::measured_rho_s, context)?,
-        roughness: scalar(keys, "roughness", 0.01..=1.0, ScalarMap::measured_roughness, context)?,
+        roughness: scalar(keys, "roughness", 0.0..=1.0, ScalarMap::measured_roughness, context)?,
         f0: keys.number_in("f0", 0.0..=1.0)?,
     })
 }

@@ -51,11 +51,6 @@ impl<'a> Emitters<'a> {
         Self { lights: &scene.lights, environment: scene.environment.as_ref().map(EnvironmentTable::new) }
     }
 
-    /// Whether there is no light at all.
-    pub fn is_dark(&self) -> bool {
-        self.lights.is_empty() && self.environment.is_none()
-    }
-
     /// Whether some light has no extent, so that only a rough surface shows it.
     pub fn has_sharp_light(&self) -> bool {
         self.lights.iter().any(|light| !light.has_extent())
@@ -78,6 +73,21 @@ impl<'a> Emitters<'a> {
 
     /// Draws one of some lights, the brighter at this point the likelier, and a direction towards it.
     pub fn draw(&self, some: Range<usize>, point_mm: DVec3, random: &mut Random) -> Option<Draw> {
+        let (i, probability) = self.choose(some, point_mm, random)?;
+        let draw = match (self.lights.get(i), &self.environment) {
+            (Some(light), _) => draw_light(light, point_mm, random),
+            (None, Some(environment)) => environment.draw(random),
+            (None, None) => return None,
+        };
+        let density_per_sr = draw.density_per_sr.map(|density| density * probability);
+        Some(Draw { light: draw.light / probability, density_per_sr, ..draw })
+    }
+
+    /// One of some lights, and the probability with which it is chosen.
+    fn choose(&self, some: Range<usize>, point_mm: DVec3, random: &mut Random) -> Option<(usize, f64)> {
+        if some.len() <= 1 {
+            return some.map(|only| (only, 1.0)).next();
+        }
         let total: f64 = some.clone().map(|i| self.brightness(i, point_mm)).sum();
         if total <= 0.0 {
             return None;
@@ -94,21 +104,18 @@ impl<'a> Emitters<'a> {
                 }
             }
         }
-        let (i, probability) = chosen?;
-        let draw = match (self.lights.get(i), &self.environment) {
-            (Some(light), _) => draw_light(light, point_mm, random),
-            (None, Some(environment)) => environment.draw(random),
-            (None, None) => return None,
-        };
-        let density_per_sr = draw.density_per_sr.map(|density| density * probability);
-        Some(Draw { light: draw.light / probability, density_per_sr, ..draw })
+        chosen
     }
 
     /// Those of some lights that have an extent and lie in a direction; the environment last.
     pub fn seen(&self, some: Range<usize>, point_mm: DVec3, dir: DVec3) -> impl Iterator<Item = Seen> + '_ {
-        let total: f64 = some.clone().map(|i| self.brightness(i, point_mm)).sum();
+        let is_alone = some.len() == 1;
+        let total: f64 =
+            if is_alone { 1.0 } else { some.clone().map(|i| self.brightness(i, point_mm)).sum::<f64>() };
+        // Where nothing shines, nothing is drawn, and zero over zero is no share.
+        let total = total.max(f64::MIN_POSITIVE);
         let surroundings = some.end > self.lights.len();
-        let share = move |i| self.brightness(i, point_mm) / total;
+        let share = move |i| if is_alone { 1.0 } else { self.brightness(i, point_mm) / total };
         let lamps = some.start..some.end.min(self.lights.len());
         let lights = lamps.filter_map(move |i| {
             let seen = see_light(&self.lights[i], point_mm, dir)?;
@@ -226,7 +233,8 @@ impl<'a> EnvironmentTable<'a> {
         let mut sum = 0.0;
         let mut sums = vec![0.0];
         for (i, weight) in weights.iter().enumerate() {
-            let even = cell_sr(i / columns, rows, columns) / (4.0 * PI) * whole;
+            // A black one is drawn evenly.
+            let even = cell_sr(i / columns, rows, columns) / (4.0 * PI) * whole.max(f64::MIN_POSITIVE);
             sum += (1.0 - EVEN_SHARE) * weight + EVEN_SHARE * even;
             sums.push(sum);
         }

@@ -39,9 +39,15 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
     let mut passes = vec![PassTime { name: "bodies".to_owned(), time: start.elapsed() }];
     let start = Instant::now();
     let film = expose(&transport, settings, progress)?;
+    let seconds = start.elapsed().as_secs_f64();
     let mut frame = film.frame(settings);
     passes.push(PassTime { name: "paths".to_owned(), time: start.elapsed() });
-    tracing::info!("{:.3e} steps inside bodies, noise {:.3} %", film.events() as f64, 100.0 * film.noise());
+    let (events, noise) = (film.events() as f64, film.noise());
+    tracing::info!(
+        "{events:.3e} collisions, {:.3e} in a second, noise {:.3} %",
+        events / seconds,
+        100.0 * noise
+    );
     if settings.aov_space == AovSpace::Texture {
         let start = Instant::now();
         let map = ExitanceMap::new(&transport, settings, progress);

@@ -234,7 +234,7 @@ impl<'a> EnvironmentTable<'a> {
         let mut sums = vec![0.0];
         for (i, weight) in weights.iter().enumerate() {
             // A black one is drawn evenly.
-            let even = cell_sr(i / columns, rows, columns) / (4.0 * PI) * whole.max(f64::MIN_POSITIVE);
+            let even = cell_sr(i / columns, rows, columns) / (4.0 * PI) * whole.max(1e-30);
             sum += (1.0 - EVEN_SHARE) * weight + EVEN_SHARE * even;
             sums.push(sum);
         }

@@ -93,8 +93,10 @@ impl Guess {
 pub struct PathSample {
     /// Radiance of light that has been inside a body, W/(m² sr).
     pub diffuse: DVec3,
-    /// Radiance of light that has not.
+    /// Radiance of light that has not, but was reflected by one.
     pub specular: DVec3,
+    /// Radiance of what is behind everything.
+    pub background: DVec3,
     /// Whether the ray met anything.
     pub covered: bool,
     /// The part of `diffuse` that entered at the first surface met, instead of being reflected onto another one.
@@ -135,7 +137,7 @@ impl<'a> Transport<'a> {
     pub fn radiance(&self, origin_mm: DVec3, dir: DVec3, random: &mut Random) -> PathSample {
         let ray = Ray64 { origin_mm, dir, from: NOWHERE };
         let Some(meeting) = self.solids.nearest(&ray, f64::INFINITY) else {
-            return PathSample { specular: self.background(dir), ..PathSample::default() };
+            return PathSample { background: self.background(dir), ..PathSample::default() };
         };
         let mut path = self.path(ray, random);
         path.sum.covered = true;

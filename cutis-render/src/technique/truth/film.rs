@@ -20,6 +20,8 @@ pub struct Film {
     width: u32,
     height: u32,
     seed: u64,
+    /// Whether there is something behind the bodies, so that no pixel is transparent.
+    is_backed: bool,
     samples: u64,
     pixels: Vec<Pixel>,
 }
@@ -45,6 +47,7 @@ impl Film {
             width,
             height,
             seed,
+            is_backed: scene.background.is_some() || scene.environment.as_ref().is_some_and(|e| e.visible),
             samples: 0,
             pixels: vec![Pixel::default(); width as usize * height as usize],
         }
@@ -61,7 +64,7 @@ impl Film {
                 let came = transport.radiance(self.eye_mm, dir, &mut random);
                 pixel.diffuse += came.diffuse;
                 pixel.specular += came.specular;
-                pixel.all.add(came.diffuse + came.specular);
+                pixel.all.add(came.diffuse + came.specular + came.background);
                 pixel.covered += u64::from(came.covered);
                 pixel.events += came.events;
             }
@@ -115,7 +118,10 @@ impl Film {
     pub fn frame(&self, settings: &Settings) -> Frame {
         let samples = self.samples as f64;
         let (width, height) = (self.width, self.height);
-        let of = |value: DVec3, pixel: &Pixel| value.as_vec3().extend(pixel.covered as f32 / samples as f32);
+        let of = |value: DVec3, pixel: &Pixel| {
+            let alpha = if self.is_backed { 1.0 } else { pixel.covered as f32 / samples as f32 };
+            value.as_vec3().extend(alpha)
+        };
         let layer = |&aov: &Aov| Layer {
             name: aov.to_string(),
             width,

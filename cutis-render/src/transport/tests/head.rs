@@ -17,6 +17,8 @@ const SIZE: usize = 256;
 const REGION: usize = 32;
 /// Texels that a region must hold.
 const TEXELS_MIN: usize = 200;
+/// Light that a region must have, over the mean of all.
+const LIT: f64 = 0.1;
 
 fn head_and_lamp(test: &str) -> Option<Scene> {
     let material = Material {
@@ -73,6 +75,7 @@ fn assert_regions_alike(test: &str, samples: u32) {
     let inner = inner_texels(&Atlas::new(&scene.objects[0], SIZE));
     let per_side = SIZE / REGION;
     let region_of = |texel: usize| texel / SIZE / REGION * per_side + texel % SIZE / REGION;
+    let overall = inner.iter().map(|&t| from_lamp.exitance_w_per_m2[t].x).sum::<f64>() / inner.len() as f64;
     let (mut compared, mut chi2) = (0.0, 0.0);
     for region in 0..per_side * per_side {
         let texels: Vec<usize> = inner.iter().copied().filter(|&t| region_of(t) == region).collect();
@@ -80,16 +83,20 @@ fn assert_regions_alike(test: &str, samples: u32) {
             continue;
         }
         let ((a, a_error), (b, b_error)) = (mean_of(&from_lamp, &texels), mean_of(&from_texels, &texels));
+        // In the dark, exits are too few to know how far they may be off.
+        if a.x.max(b.x) < LIT * overall {
+            continue;
+        }
         let error = (a_error.powf(2.0) + b_error.powf(2.0)).powf(0.5);
         let apart = (a - b) / error;
         eprintln!("region {region} of {} texels: {a:.5} and {b:.5}, {apart:+.2} errors", texels.len());
         compared += 1.0;
         chi2 += apart.x * apart.x;
-        // Some 30 regions of 3 channels, nearly alike, four standard errors: a false alarm in 200 seeds.
+        // Some 20 regions of 3 channels, four standard errors: a false alarm in 260 seeds.
         assert!(apart.abs().cmple(DVec3::splat(4.0)).all(), "region {region}: {a} and {b}, {apart} errors");
     }
     eprintln!("chi² {chi2:.1} of {compared} regions");
-    assert!(compared > 15.0, "there are regions: {compared}");
+    assert!(compared > 12.0, "there are regions: {compared}");
     assert!(chi2 < compared + 3.0 * f64::sqrt(2.0 * compared), "chi² {chi2} of {compared} regions");
 }
 

@@ -1,6 +1,6 @@
 //! What must change nothing: how finely a shape is cut into triangles, and the unit of length.
 
-use super::{assert_alike, ball, material, scene_of};
+use super::{assert_alike, ball, even_environment, material, scene_of};
 use crate::Silent;
 use crate::settings::Settings;
 use crate::technique::truth;
@@ -60,7 +60,12 @@ fn assert_cut_alike(paths: u64) {
         let coarse = ball(10.0, 8, material(0.05, 1.5, 1.4, roughness));
         let fine = cut_in_four(&coarse);
         assert_eq!(fine.mesh.triangles.len(), 4 * coarse.mesh.triangles.len());
-        let [coarse, fine] = [coarse, fine].map(|object| scene_of(vec![object], vec![lamp(1.0)], None));
+        // Through a smooth surface a lamp is met too rarely.
+        let lit = |object| match roughness {
+            0.0 => scene_of(vec![object], vec![], Some(even_environment())),
+            _ => scene_of(vec![object], vec![lamp(1.0)], None),
+        };
+        let [coarse, fine] = [coarse, fine].map(lit);
         let name = format!("coarse and fine, roughness {roughness}");
         assert_alike(&name, &seen(&coarse, 5, paths), &seen(&fine, 6, paths));
     }
@@ -99,11 +104,12 @@ fn the_unit_of_length_is_of_no_account() {
         for (a, b) in one.iter().zip(&many) {
             assert!((*a - *b).abs().max_element() <= 1e-6 * a.abs().max_element(), "{a} {b}");
         }
-        // By 1000 positions round, so that some paths part: noise of both, 16 x 256 samples.
+        // Times 1000 positions round, and a path in many parts from its twin: each changes the sum of 4096 by about a
+        // 4096th. Five may.
         let thousand = pixels(1000.0, roughness);
         let sum = |pixels: &[glam::Vec4]| pixels.iter().map(|p| p.x).sum::<f32>();
         let off = (sum(&thousand) / sum(&one) - 1.0).abs();
         eprintln!("roughness {roughness}: a thousand times as large, {off:.1e} brighter or darker");
-        assert!(off < 0.02, "{off}");
+        assert!(off < 5.0 / 4096.0, "{off}");
     }
 }

@@ -65,14 +65,14 @@ fn packet(transport: &Transport, top_mm: f64, random: &mut Random) -> End {
 }
 
 /// A beam onto a box filled with this tissue.
-fn beam(tissue: &Tissue, half_mm: Vec3, packets: u64) -> Beam {
+fn beam(tissue: &Tissue, half_mm: Vec3, packets: u64, seed: u64) -> Beam {
     let index = tissue.refractive_index;
     // The material's own medium is replaced.
     let scene = scene_of(vec![cuboid(half_mm, material(0.0, 1.0, index, 0.0))], vec![], None);
     let mut transport = Transport::new(&scene, 1).unwrap();
     transport.bodies[0].tissue = tissue.clone();
     let top_mm = f64::from(half_mm.z);
-    let end = |number| packet(&transport, top_mm, &mut Random::new(21, number, 0));
+    let end = |number| packet(&transport, top_mm, &mut Random::new(seed, number, 0));
     let ends: Vec<End> = (0..packets).into_par_iter().map(end).collect();
     let nothing = Estimate::default();
     let mut beam =
@@ -124,7 +124,7 @@ fn assert_as_flat(name: &str, tissue: &Tissue, layers: &[TissueLayer], packets: 
     let thickness_mm: f64 = layers.iter().map(|layer| layer.thickness_mm).sum();
     let half_mm = Vec3::new(HALF_SIDE_MM, HALF_SIDE_MM, 0.5 * thickness_mm as f32);
     let index = tissue.refractive_index;
-    let ours = beam(tissue, half_mm, packets);
+    let ours = beam(tissue, half_mm, packets, 21);
     let mirrored = ((index - 1.0) / (index + 1.0)).powi(2);
     let off = (ours.specular.mean().x - mirrored).abs();
     assert!(off <= ERRORS * ours.specular.standard_error().x, "{name}: specular {off}");
@@ -202,35 +202,35 @@ fn slow_slabs_are_as_the_flat_ones() {
 }
 
 /// Albedos, and exact total reflectance of isotropic half-spaces with a matched boundary under a normal beam: Chandrasekhar's H
-/// function by quadrature, eight decimals.
-const EXACT_HALF_SPACES: [(f64, f64); 6] = [
+/// function by quadrature, eight decimals. Through the whitest, 18 mm fall by e: a block of 1 m is endless.
+const EXACT_HALF_SPACES: [(f64, f64); 7] = [
     (0.2, 0.035_230_52),
     (0.5, 0.115_225_88),
     (0.8, 0.285_254_50),
     (0.9, 0.414_947_48),
     (0.95, 0.535_540_99),
     (0.99, 0.752_720_72),
+    (0.999, 0.912_845_33),
 ];
-/// The one that lets light go far: 18 mm fall by e, against which a block of 1 m is endless.
-const EXACT_NEARLY_WHITE: (f64, f64) = (0.999, 0.912_845_33);
 
-fn assert_exact(cases: [(f64, f64); 3], packets: u64) {
+fn assert_exact(cases: [(f64, f64); 3], packets: u64, seed: u64) {
     let albedos = cases.map(|(albedo, _)| albedo);
     let medium = layer(f64::INFINITY, albedos.map(|albedo| 1.0 - albedo), albedos, 0.0);
-    let ours = beam(&Tissue::new(vec![medium], 1.0), Vec3::splat(500.0), packets);
+    let ours = beam(&Tissue::new(vec![medium], 1.0), Vec3::splat(500.0), packets, seed);
     for (channel, (albedo, exact)) in cases.into_iter().enumerate() {
         let (mean, error) = (ours.reflected.mean()[channel], ours.reflected.standard_error()[channel]);
         eprintln!("albedo {albedo}: {mean:.5} ± {error:.5} against {exact:.5}");
-        // Seven of three standard errors: a false alarm in 50 seeds.
+        // Nine of three standard errors: a false alarm in 40 seeds.
         assert!((mean - exact).abs() <= ERRORS * error, "albedo {albedo}: {mean} ± {error} against {exact}");
     }
 }
 
 fn half_spaces(packets: u64) {
-    let [a, b, c, d, e, f] = EXACT_HALF_SPACES;
-    assert_exact([a, b, c], packets);
-    assert_exact([d, e, f], packets);
-    assert_exact([EXACT_NEARLY_WHITE; 3], packets / 2);
+    let [a, b, c, d, e, f, g] = EXACT_HALF_SPACES;
+    assert_exact([a, b, c], packets, 31);
+    assert_exact([d, e, f], packets, 32);
+    // The last two again: a path of three so different ones is weighed differently for each.
+    assert_exact([e, f, g], packets / 2, 33);
 }
 
 #[test]

@@ -8,12 +8,14 @@ use glam::{DVec3, Vec3};
 const BALL_MM: [f64; 2] = [200.0, 3.0];
 const HEAD_MM: [f64; 2] = [1000.0, 150.0];
 
-/// Three standard errors, a false alarm in 370 for each body (its channels are alike); and 1e-4 where paths are one and all
-/// alike, and none has an error.
-fn assert_vanished(name: &str, seen: &Estimate) {
+/// Three standard errors, a false alarm in 370 for each rough body (its channels are alike). Through a sharp surface no light
+/// is asked for: every path ends in the same light, and not one may be lost. 1e-5 is for rounding: a path has at most some
+/// 10,000 steps of 1e-16 in double precision, and the light is stored in single.
+fn assert_vanished(name: &str, is_sharp: bool, seen: &Estimate) {
     let (off, error) = ((seen.mean() - 1.0).abs(), seen.standard_error());
     eprintln!("{name}: {:.5} ± {:.5}", seen.mean().x, error.x);
-    assert!(off.cmple(error * 3.0 + 1e-4).all(), "{name}: {off} {error}");
+    let noise = if is_sharp { DVec3::ZERO } else { error * 3.0 };
+    assert!(off.cmple(noise + 1e-5).all(), "{name}: {off} {error}");
 }
 
 #[test]
@@ -25,7 +27,11 @@ fn a_white_body_vanishes_in_a_white_furnace() {
                 let name = object.name.clone();
                 let scene = scene_of(vec![object], vec![], Some(even_environment()));
                 let seen = seen_from_everywhere(&scene, DVec3::ZERO, BALL_MM, 4000);
-                assert_vanished(&format!("{name} index {index} roughness {roughness}"), &seen);
+                assert_vanished(
+                    &format!("{name} index {index} roughness {roughness}"),
+                    roughness == 0.0 || index == 1.0,
+                    &seen,
+                );
             }
         }
     }
@@ -48,7 +54,11 @@ fn the_head_vanishes(test: &str, paths: u64) {
             let [low, high] = head.mesh.bounds_mm().unwrap();
             let scene = scene_of(vec![head], vec![], Some(even_environment()));
             let seen = seen_from_everywhere(&scene, (low + high).as_dvec3() * 0.5, HEAD_MM, paths);
-            assert_vanished(&format!("head index {index} roughness {roughness}"), &seen);
+            assert_vanished(
+                &format!("head index {index} roughness {roughness}"),
+                roughness == 0.0 || index == 1.0,
+                &seen,
+            );
         }
     }
 }

@@ -17,4 +17,4 @@ pub mod tissue;
 pub mod walk;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -157,3 +157,6 @@ fn check_lights(transport: &Transport) -> Result<(), RenderError> {
         None => Ok(()),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,80 @@
+//! Lamps: asked for, met by chance, or followed from where they shine, they light a body alike.
+
+use super::{assert_alike, ball, material, scene_of};
+use crate::transport::estimate::Estimate;
+use crate::transport::exitance::{Entrances, of_place};
+use crate::transport::path::Transport;
+use crate::transport::random::Random;
+use cutis_scene::{Light, Scene};
+use glam::{DVec3, Vec3};
+use std::f32::consts::{PI, TAU};
+
+/// A ball in the light of a lamp as large as it, from aside.
+fn lamp_and_ball(rings: u32, roughness: f32) -> Scene {
+    let lamp = Light::Point {
+        position_mm: Vec3::new(40.0, 60.0, 70.0),
+        intensity_w_per_sr: Vec3::new(0.03, 0.02, 0.01),
+        radius_mm: 8.0,
+    };
+    scene_of(vec![ball(10.0, rings, material(0.05, 1.5, 1.4, roughness))], vec![lamp], None)
+}
+
+/// Mean radiance of light from inside over rays from the camera that meet the ball.
+fn seen_by_camera(transport: &Transport, paths: u64) -> Estimate {
+    let mut estimate = Estimate::default();
+    for i in 0..paths {
+        let mut random = Random::new(5, i, 1);
+        let aim = random.direction() * 7.0;
+        let from = DVec3::new(0.0, 0.0, 100.0);
+        let sample = transport.radiance(from, (aim - from).normalize(), &mut random);
+        if sample.covered {
+            estimate.add(sample.diffuse);
+        }
+    }
+    estimate
+}
+
+#[test]
+fn lamps_asked_through_the_surface_shine_as_lamps_met_by_chance() {
+    let scene = lamp_and_ball(24, 0.5);
+    let asked = Transport::new(&scene, 1).unwrap();
+    let mut met = Transport::new(&scene, 1).unwrap();
+    met.bodies[0].connection_mm = 0.0;
+    let (asked, met) = (seen_by_camera(&asked, 20_000), seen_by_camera(&met, 60_000));
+    assert_alike("asked and met", &asked, &met);
+    // What it is for: from a third of the paths less noise.
+    assert!(asked.standard_error().x < met.standard_error().x, "{asked:?} {met:?}");
+}
+
+#[test]
+fn light_from_lamps_leaves_as_the_eye_sees_it() {
+    for roughness in [0.3, 0.0] {
+        let scene = lamp_and_ball(16, roughness);
+        let transport = Transport::new(&scene, 1).unwrap();
+        let entrances = Entrances::new(&transport);
+        // In both halves of the ball, towards the lamp and away from it.
+        let half = |place: DVec3| usize::from(place.dot(DVec3::new(40.0, 60.0, 70.0)) < 0.0);
+        let (mut from_lamp, packets) = ([Estimate::default(); 2], 60_000);
+        let area_mm2 = entrances.area_mm2() / 2.0;
+        for number in 0..packets {
+            let mut flux = [DVec3::ZERO; 2];
+            entrances.walk(3, number, 1, |exit| {
+                let (theta, phi) = (exit.uv.y * PI, exit.uv.x * TAU);
+                let dir = Vec3::new(theta.sin() * phi.cos(), theta.cos(), theta.sin() * phi.sin());
+                flux[half(dir.as_dvec3())] += exit.flux / area_mm2;
+            });
+            (0..2).for_each(|h| from_lamp[h].add(flux[h]));
+        }
+        let mut from_places = [Estimate::default(); 2];
+        let mut random = Random::new(8, 0, 0);
+        for number in 0..if roughness > 0.0 { 30_000 } else { 400_000 } {
+            let (meeting, place) = entrances.place(&mut random);
+            let came = of_place(&transport, meeting, place, &mut Random::new(9, number, 0));
+            let h = half(place);
+            from_places[h].add(came);
+        }
+        for h in 0..2 {
+            assert_alike(&format!("roughness {roughness}, half {h}"), &from_lamp[h], &from_places[h]);
+        }
+    }
+}

@@ -18,6 +18,9 @@ pub struct ValidateArgs {
     /// Samples per pixel of that truth [16 to 1048576, default: 512]
     #[arg(long, value_name = "N", requires = "update")]
     pub samples: Option<u32>,
+    /// Folder for pictures to look at: the diffuse part of the truth and of each technique, and maps of the errors
+    #[arg(long, value_name = "DIR")]
+    pub pictures: Option<PathBuf>,
     /// Print one JSON object on stdout, and nothing else
     #[arg(long, conflicts_with = "table")]
     pub json: bool,

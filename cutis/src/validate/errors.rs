@@ -3,7 +3,7 @@
 use super::stored::Truth;
 use crate::measure::{Measured, Seen};
 use cutis_render::difference::{DEFAULT_PIXELS_PER_DEGREE, DifferenceError, Pair, numbers};
-use glam::{Vec3, Vec4};
+use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 /// Truths that are drawn anew to learn what chance does to a number: its spread is known within a quarter.
@@ -28,9 +28,7 @@ impl Errors {
     }
 
     fn against(test: &Seen, truth: &Truth, light: &[Vec3]) -> Result<Self, DifferenceError> {
-        let height = light.len() / truth.width;
-        let pixels: Vec<Vec4> = light.iter().map(|p| p.extend(1.0)).collect();
-        let reference = Seen::developed(truth.width as u32, height as u32, pixels, 0.0);
+        let reference = truth.seen(light);
         let measured = Measured::new(test, &reference, DEFAULT_PIXELS_PER_DEGREE)?;
         Ok(Self {
             relative_rmse: measured.numbers.rmse / root_mean_square(light, truth.width)?,
@@ -63,6 +61,12 @@ impl Errors {
 }
 
 impl Truth {
+    /// Its own diffuse part, or another one of its size, as pictures are compared.
+    pub fn seen(&self, light: &[Vec3]) -> Seen {
+        let (width, height) = (self.width as u32, (light.len() / self.width) as u32);
+        Seen::developed(width, height, light.iter().map(|p| p.extend(1.0)).collect(), 0.0)
+    }
+
     /// Relative RMSE that its own noise makes.
     pub fn noise(&self) -> Result<f64, DifferenceError> {
         let errors = root_mean_square(&self.standard_errors, self.width)?;

@@ -25,6 +25,8 @@ pub struct Job {
     pub folder: PathBuf,
     pub update: bool,
     pub truth_samples: u32,
+    /// Where pictures to look at go.
+    pub pictures: Option<PathBuf>,
 }
 
 impl Job {
@@ -36,11 +38,15 @@ impl Job {
             folder: args.truth.clone(),
             update: args.update,
             truth_samples: args.samples.unwrap_or(TRUTH_SAMPLES),
+            pictures: args.pictures.clone(),
         };
         if job.truth_samples < TRUTH_SAMPLES_MIN {
             bail!("--samples must be {TRUTH_SAMPLES_MIN} to 1048576, got {}", job.truth_samples);
         }
         job.truth_settings().check().map_err(refused)?;
+        if let Some(folder) = job.pictures.as_ref().filter(|folder| !folder.is_dir()) {
+            bail!("{}: there is no such folder for pictures", folder.display());
+        }
         if !job.folder.is_dir() {
             bail!(
                 help = "it lies in the project's folder; make one elsewhere with --truth and --update",

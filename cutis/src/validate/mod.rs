@@ -6,6 +6,7 @@
 mod bounds;
 mod errors;
 mod job;
+mod pictures;
 mod report;
 mod stored;
 
@@ -115,14 +116,17 @@ fn judge_entry(
     verbose: u8,
 ) -> Result<EntryReport> {
     let drawn = Drawn::by(entry, &job.settings(entry), scene, &format!("{name}, {entry}: "), verbose)?;
+    // Scenes share their medium, and with it most of what is worth knowing.
     for warning in &drawn.warnings {
-        let told = format!("{name}: {warning}");
-        if !warnings.contains(&told) {
-            warnings.push(told);
+        if !warnings.contains(warning) {
+            warnings.push(warning.clone());
         }
     }
     // A technique that does not tell its specular part apart is judged as if it drew none.
     let seen = drawn.diffuse.as_ref().unwrap_or(&drawn.picture);
+    if let Some(folder) = &job.pictures {
+        pictures::write(folder, name, &entry.to_string(), seen, truth)?;
+    }
     let failed = |error| miette!("{name}, {entry}: {error}");
     Ok(EntryReport {
         name: entry.to_string(),

@@ -21,6 +21,7 @@ pub mod studio;
 pub mod tangents;
 pub mod texture;
 pub mod topology;
+pub mod validation;
 
 mod scene;
 

@@ -4,6 +4,7 @@
 mod compare;
 mod diff;
 mod profile;
+mod validate;
 
 use crate::talk;
 use clap::builder::PossibleValuesParser;
@@ -17,6 +18,7 @@ pub use profile::{METHODS, ProfileArgs};
 use std::fmt::Display;
 use std::path::PathBuf;
 use std::process::ExitCode;
+pub use validate::ValidateArgs;
 
 /// Diffusion operators that can be chosen.
 pub const DIFFUSIONS: [Diffusion; 2] = [Diffusion::None, Diffusion::Separable];
@@ -46,6 +48,8 @@ pub enum Command {
     Compare(Box<CompareArgs>),
     /// Tell how far a picture is from a reference: RMSE, relative MSE, bias, FLIP
     Diff(DiffArgs),
+    /// Render small scenes with every technique and judge them by the simulated truth that is kept
+    Validate(ValidateArgs),
     /// Compute a diffusion profile, fit it by Gaussians, plot it, export it
     Profile(Box<ProfileArgs>),
     /// Simulate light in layered slabs by Monte Carlo

@@ -20,6 +20,7 @@ mod report;
 mod scene_source;
 mod simulate;
 mod talk;
+mod validate;
 mod whole_file;
 
 use cli::{Cli, Command};
@@ -54,6 +55,7 @@ fn run(cli: &Cli) -> miette::Result<Outcome> {
         Command::Render(args) => render::run(args, cli.verbose),
         Command::Compare(args) => compare::run(args, cli.verbose),
         Command::Diff(args) => diff::run(args),
+        Command::Validate(args) => validate::run(args, cli.verbose),
         Command::Profile(args) => profile::run(args, cli.verbose),
         Command::Simulate(args) => simulate::run(args, cli.verbose),
         Command::Presets(args) => presets::run(args),

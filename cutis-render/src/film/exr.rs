@@ -19,11 +19,12 @@ use std::io::{Seek, Write};
 /// Largest finite half float.
 const MAX_HALF: f32 = 65_504.0;
 
-/// Writes a frame with its layers.
+/// Writes a frame with its layers, and with words about it where there are some (attribute `comments` of every part).
 pub(super) fn write_frame(
     to: impl Write + Seek,
     frame: &Frame,
     half: bool,
+    comment: Option<&str>,
 ) -> Result<(), ::exr::error::Error> {
     let (same, other): (Vec<_>, Vec<_>) =
         frame.layers.iter().partition(|layer| (layer.width, layer.height) == (frame.width, frame.height));
@@ -32,6 +33,9 @@ pub(super) fn write_frame(
     let mut parts = vec![part("picture", frame.width, frame.height, channels)];
     for layer in other {
         parts.push(part(&layer.name, layer.width, layer.height, layer_channels(layer, half)));
+    }
+    for part in &mut parts {
+        part.attributes.comments = comment.map(Text::from);
     }
     let window = IntegerBounds::from_dimensions(Vec2(frame.width as usize, frame.height as usize));
     let attributes = ImageAttributes { chromaticities: Some(rec709()), ..ImageAttributes::new(window) };
@@ -94,7 +98,7 @@ mod tests {
     /// Values of each channel by name, through the general reader of the crate.
     fn read_back(frame: &Frame, half: bool) -> BTreeMap<String, Vec<f32>> {
         let mut file = Cursor::new(Vec::new());
-        write_frame(&mut file, frame, half).expect("memory takes everything");
+        write_frame(&mut file, frame, half, None).expect("memory takes everything");
         file.set_position(0);
         let image = ::exr::prelude::read()
             .no_deep_data()
@@ -176,7 +180,7 @@ mod tests {
     fn the_same_frame_makes_the_same_bytes() {
         let write = || {
             let mut file = Cursor::new(Vec::new());
-            write_frame(&mut file, &frame(), true).expect("memory takes everything");
+            write_frame(&mut file, &frame(), true, None).expect("memory takes everything");
             file.into_inner()
         };
         assert_eq!(write(), write());

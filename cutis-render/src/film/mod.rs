@@ -26,7 +26,7 @@ pub use error::FilmError;
 pub use format::{Format, known_extensions};
 pub use srgb::linear_to_srgb;
 pub use tone_map::ToneMapper;
-pub use write::{LayerFile, Written, check_output, layer_path, write};
+pub use write::{LayerFile, Written, annotated_exr, check_output, layer_path, write};
 
 use crate::{Frame, PassTime};
 use glam::{Vec3, Vec4};

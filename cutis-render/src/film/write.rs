@@ -75,8 +75,19 @@ pub fn write(path: &Path, format: Format, frame: &Frame, film: &Film) -> Result<
     }
 }
 
+/// The bytes of a half-float EXR file as [`write()`] makes it, with words about the picture in its header (attribute
+/// `comments`).
+///
+/// # Errors
+/// If the frame cannot be encoded; the text says why.
+pub fn annotated_exr(frame: &Frame, comment: &str) -> Result<Vec<u8>, String> {
+    let mut file = std::io::Cursor::new(Vec::new());
+    exr::write_frame(&mut file, frame, true, Some(comment)).map_err(|e| e.to_string())?;
+    Ok(file.into_inner())
+}
+
 fn write_exr(path: &Path, half: bool, frame: &Frame) -> Result<Written, FilmError> {
-    PartialFile::fill(path, |writer| exr::write_frame(writer, frame, half))?.commit()?;
+    PartialFile::fill(path, |writer| exr::write_frame(writer, frame, half, None))?.commit()?;
     let inside =
         |layer: &Layer| LayerFile { name: layer.name.clone(), path: path.to_owned(), black_and_white: None };
     let layers = frame.layers.iter().map(inside).collect();

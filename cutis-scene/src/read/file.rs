@@ -67,6 +67,12 @@ pub(crate) fn resolve_for_user(path: &Path, assets: Option<&Path>) -> Result<Pat
     }
 }
 
+/// A file on the shelf, or why it is not there.
+pub(crate) fn asset(name: &str) -> Result<PathBuf, String> {
+    let words = |reason| format!("assets:{name}: {reason}");
+    assets_folder(None).and_then(|folder| inside(&folder, name, "the assets folder")).map_err(words)
+}
+
 /// The shelf: as given, as the environment says, or at its usual place.
 fn assets_folder(given: Option<&Path>) -> Result<PathBuf, String> {
     if let Some(folder) = given {
@@ -79,7 +85,7 @@ fn assets_folder(given: Option<&Path>) -> Result<PathBuf, String> {
     if usual.is_dir() {
         return Ok(usual);
     }
-    Err(format!("starts with `assets:`, but there is no assets folder; set {ASSETS_VARIABLE} to it"))
+    Err(format!("there is no assets folder; set {ASSETS_VARIABLE} to it"))
 }
 
 /// `text` below `root`, symbolic links followed, or a refusal.

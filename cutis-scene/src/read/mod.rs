@@ -15,6 +15,7 @@ mod textures;
 use crate::{Camera, Environment, Light, Material, Mesh, Scene, SceneError};
 use std::path::{Path, PathBuf};
 
+pub(crate) use file::asset;
 pub use image::{ColourSpace, PictureFile, read_image, read_picture};
 
 /// What the caller knows better than the file, mostly from the command line.

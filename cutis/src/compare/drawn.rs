@@ -5,7 +5,7 @@ use super::job::Job;
 use crate::machine::{forget_peak_memory, peak_memory_mib};
 use crate::measure::Seen;
 use crate::progress::Bar;
-use cutis_render::{Aov, CpuRenderer, Layer, PassTime, Renderer};
+use cutis_render::{Aov, CpuRenderer, Layer, PassTime, Renderer, Settings};
 use cutis_scene::Scene;
 use glam::Vec4;
 use miette::{Result, miette};
@@ -37,11 +37,15 @@ impl Drawn {
     pub fn new(job: &Job, index: usize, scene: &Scene, verbose: u8) -> Result<Self> {
         let entry = job.entries[index];
         let name = format!("{} of {}, {entry}: ", index + 1, job.entries.len());
+        Self::by(entry, &job.settings_of(index), scene, &name, verbose)
+    }
+
+    /// Renders a scene by an entry, whose technique and diffusion are in the settings; the name is for the progress.
+    pub fn by(entry: Entry, settings: &Settings, scene: &Scene, name: &str, verbose: u8) -> Result<Self> {
         tracing::info!("{}", name.trim_end_matches([':', ' ']));
-        let settings = job.settings_of(index);
         let counts_alone = forget_peak_memory();
-        let (start, bar) = (Instant::now(), Bar::named(&name, verbose));
-        let frame = CpuRenderer.render(scene, &settings, &bar);
+        let (start, bar) = (Instant::now(), Bar::named(name, verbose));
+        let frame = CpuRenderer.render(scene, settings, &bar);
         bar.finish();
         let milliseconds = start.elapsed().as_secs_f64() * 1e3;
         let frame = frame.map_err(|error| miette!("{entry}: {error}"))?;

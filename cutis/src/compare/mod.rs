@@ -4,8 +4,8 @@
 //! found becomes a [`report`], a [`csv`] table and a [`html`] page.
 
 mod csv;
-mod drawn;
-mod entry;
+pub mod drawn;
+pub mod entry;
 mod html;
 mod job;
 mod judged;

@@ -62,10 +62,10 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
 fn expose(transport: &Transport, settings: &Settings, progress: &dyn Progress) -> Result<Film, RenderError> {
     let (key, wanted) = (key::of(transport.scene, settings), u64::from(settings.samples_per_pixel));
     let mut film = Film::new(transport.scene, settings);
-    if let Some(checkpoint) = &settings.checkpoint {
-        if let Some((samples, state)) = checkpoint.load(key, film.state().len()).map_err(kept)? {
-            film.restore(samples, &state);
-        }
+    if let Some(checkpoint) = &settings.checkpoint
+        && let Some((samples, state)) = checkpoint.load(key, film.state().len()).map_err(kept)?
+    {
+        film.restore(samples, &state);
     }
     let step = (PASS / (u64::from(settings.width) * u64::from(settings.height))).clamp(1, 16);
     let mut last_kept = Instant::now();

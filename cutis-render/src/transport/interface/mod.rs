@@ -41,7 +41,7 @@ impl Interface {
             return -from;
         }
         if self.roughness > 0.0 {
-            let (surface, side) = self.from_above(from);
+            let (surface, side) = self.with_above(from);
             return surface.sample(from * side, random) * side;
         }
         let up = DVec3::new(0.0, 0.0, 1f64.copysign(from.z));
@@ -60,13 +60,13 @@ impl Interface {
         if self.is_sharp() {
             return 0.0;
         }
-        let (surface, side) = self.from_above(from);
+        let (surface, side) = self.with_above(from);
         surface.eval_per_sr(from * side, to * side, random)
     }
 
     /// About the density of [`Interface::sample`], 1/sr: good enough to weigh two estimates of the same light.
     pub fn rough_density_per_sr(&self, from: DVec3, to: DVec3) -> f64 {
-        let (surface, side) = self.from_above(from);
+        let (surface, side) = self.with_above(from);
         surface.single_density_per_sr(from * side, to * side) + EVEN_SPREAD * to.z.abs() / PI
     }
 
@@ -87,7 +87,7 @@ impl Interface {
 
     /// The surface seen with `from` above it, and the sign that turns directions so. Beckmann's surface is the same from
     /// both sides.
-    fn from_above(&self, from: DVec3) -> (Microsurface, f64) {
+    fn with_above(&self, from: DVec3) -> (Microsurface, f64) {
         let side = 1f64.copysign(from.z);
         (Microsurface::new(self.roughness, self.eta_towards(from)), side)
     }

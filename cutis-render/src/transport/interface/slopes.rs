@@ -108,8 +108,8 @@ mod tests {
     fn what_is_seen_adds_up_to_the_projected_area() {
         for m in [0.1, 0.3, 0.8] {
             let slopes = Slopes::new(m);
-            for cos in [-0.4, -0.05, 0.05, 0.3, 0.9, 1.0] {
-                let sin = (1.0 - cos * cos as f64).sqrt();
+            for cos in [-0.4f64, -0.05, 0.05, 0.3, 0.9, 1.0] {
+                let sin = (1.0 - cos * cos).sqrt();
                 let w = DVec3::new(0.6 * sin, -0.8 * sin, cos);
                 let (rings, sectors) = (1500, 300);
                 let (step, turn) = (FRAC_PI_2 / f64::from(rings), TAU / f64::from(sectors));
@@ -135,8 +135,8 @@ mod tests {
         // exceeds 115 once in 50,000.
         let slopes = Slopes::new(0.4);
         let mut random = Random::new(5, 0, 0);
-        for cos in [-0.2, 0.1, 0.5, 1.0] {
-            let sin = (1.0 - cos * cos as f64).sqrt();
+        for cos in [-0.2f64, 0.1, 0.5, 1.0] {
+            let sin = (1.0 - cos * cos).sqrt();
             let w = DVec3::new(sin, 0.0, cos);
             let (rows, columns, fine) = (10, 6, 60);
             // Bins even in e^(-tan²/m²), which Beckmann's own distribution fills evenly: what is seen of it is more or less by

@@ -18,7 +18,7 @@ const PACKETS: u64 = 20_000;
 
 /// The head in the light of one lamp, in front of a camera.
 fn scene() -> Scene {
-    let mut head = built_in(&HeadDetail { triangles: 100_000, map_size: 0 });
+    let mut head = built_in(HeadDetail { triangles: 100_000, map_size: 0 });
     head.material.scattering = Scattering::Preset("skin1".to_owned());
     head.material.albedo = ColourMap { factor: Vec3::ONE, texture: None };
     let bounds_mm = head.mesh.bounds_mm().expect("the head has vertices");

@@ -16,7 +16,7 @@ fn help_tells_units_ranges_and_defaults() {
         "[EV (stops), -32 to 32, default 0]",
         "[mm, above 0",
         "[texels, 16 to 16384] [default: 2048]",
-        "[1 to 4096] [default: 4]",
+        "[1 to 1048576] [default: 4]",
         "[fraction, 0 to 1, default 0.04]",
         "[possible values: none, separable]",
     ];
@@ -45,7 +45,7 @@ fn nonsense_ends_with_code_2_and_one_clear_line() {
         (&["--size", "0x0"], "width must be 1 to 16384 pixels, got 0"),
         (&["--size", "70000x70000"], "width must be 1 to 16384 pixels, got 70000"),
         (&["--size", "big"], "WIDTHxHEIGHT"),
-        (&["--samples", "0"], "samples per pixel must be 1 to 4096"),
+        (&["--samples", "0"], "samples per pixel must be 1 to 1048576"),
         (&["--samples", "-3"], "-3"),
         (&["--exposure-ev", "NaN"], "exposure must be -32 to 32 EV, got NaN"),
         (&["--exposure-ev", "-33"], "exposure must be -32 to 32 EV, got -33"),

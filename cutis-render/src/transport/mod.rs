@@ -7,6 +7,7 @@
 //! they overlap (the one entered first fills it).
 
 pub mod body;
+mod connection;
 pub mod emitter;
 pub mod estimate;
 pub mod exitance;

@@ -5,6 +5,7 @@ use crate::transport::estimate::Estimate;
 use crate::transport::exitance::{Entrances, of_place};
 use crate::transport::path::Transport;
 use crate::transport::random::Random;
+use cutis_optics::simulate::{Grid, Layer, LayeredSlab, Rings, Simulation};
 use cutis_scene::{Light, Scene};
 use glam::{DVec3, Vec3};
 use std::f32::consts::{PI, TAU};
@@ -77,4 +78,43 @@ fn light_from_lamps_leaves_as_the_eye_sees_it() {
             assert_alike(&format!("roughness {roughness}, half {h}"), &from_lamp[h], &from_places[h]);
         }
     }
+}
+
+/// A film on the surface is passed once in and once out, however often light is thrown back within: with `albedo_mix` 0.5 the
+/// bare ball's light times the albedo, over the colour that the bare tissue has on its own; seen by the eye, and leaving.
+#[test]
+fn a_film_colours_light_once_in_and_once_out() {
+    let bare = lamp_and_ball(16, 0.4);
+    let mut filmed = bare.clone();
+    let albedo = Vec3::new(0.8, 0.5, 0.2);
+    filmed.objects[0].material.albedo.factor = albedo;
+    let [bare, filmed] = [&bare, &filmed].map(|scene| Transport::new(scene, 1).unwrap());
+    // What the tissue reflects on its own: sigma_s 1.5, sigma_a 0.05, index 1.4, by the other simulation.
+    let layer = Layer {
+        sigma_a_per_mm: 0.05,
+        sigma_s_per_mm: 1.5,
+        g: 0.0,
+        refractive_index: 1.4,
+        thickness_mm: f64::INFINITY,
+    };
+    let grid =
+        Grid { rings: Rings::even(1.0, 1).unwrap(), depth_step_mm: 1.0, depth_bins: 1, cosine_bins: 1 };
+    let slab = LayeredSlab::in_air(vec![layer]).unwrap();
+    let own = Simulation { slab, grid, seed: 77 }.run(200_000).diffuse_reflectance();
+    let expected = albedo.as_dvec3() / own.value;
+    // The same random numbers walk the same ways: the ratio is that of the films, but for roulette; and the body's own
+    // simulation of its colour has 1/2 % of noise.
+    let assert_ratio = |what: &str, plain: DVec3, coloured: DVec3| {
+        let ratio = coloured / plain / expected;
+        eprintln!("{what}: {ratio}");
+        assert!((ratio - 1.0).abs().max_element() < 0.02, "{what}: {ratio}");
+    };
+    let seen = |transport| seen_by_camera(transport, 20_000).mean();
+    assert_ratio("seen", seen(&bare), seen(&filmed));
+    let leaving = |transport| {
+        let mut flux = DVec3::ZERO;
+        Entrances::new(transport).walk(3, 0, 100_000, |exit| flux += exit.flux);
+        flux
+    };
+    assert_ratio("leaving", leaving(&bare), leaving(&filmed));
 }

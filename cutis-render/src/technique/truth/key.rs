@@ -1,31 +1,54 @@
 //! A number that tells renderings apart whose samples must not be mixed.
 
 use crate::settings::Settings;
-use cutis_scene::Scene;
+use cutis_scene::{Material, Scene, Texture};
+use glam::{Vec2, Vec3};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// The number of a scene and of the settings that change its samples. Of textures
-/// only their size counts.
+/// Places along a side of a texture that are looked at: an edit that misses all of them is a dot.
+const PLACES: u32 = 256;
+
+/// The number of a scene and of the settings that change its samples.
 pub fn of(scene: &Scene, settings: &Settings) -> u64 {
     let mut hasher = DefaultHasher::new();
     (settings.width, settings.height, settings.seed).hash(&mut hasher);
     let Scene { lights, camera, background, environment, .. } = scene;
     format!("{lights:?} {camera:?} {background:?}").hash(&mut hasher);
     if let Some(environment) = environment {
-        let size = (environment.map.width(), environment.map.height());
-        format!("{size:?} {} {}", environment.rotation_rad, environment.radiance_scale).hash(&mut hasher);
-        let directions =
-            [glam::Vec3::X, glam::Vec3::Y, glam::Vec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
-        directions.for_each(|dir| format!("{}", environment.radiance(dir)).hash(&mut hasher));
+        format!("{} {:?}", environment.rotation_rad, environment.radiance_scale).hash(&mut hasher);
+        hash_texture(&environment.map, &mut hasher);
     }
     for object in &scene.objects {
-        let material = &object.material;
-        let numbers =
-            (&material.scattering, material.albedo.factor, material.albedo_mix, material.largest_map());
-        format!("{} {numbers:?} {} {}", object.name, material.roughness.offset, material.rho_s.offset)
-            .hash(&mut hasher);
+        object.name.hash(&mut hasher);
+        hash_material(&object.material, &mut hasher);
         object.mesh.triangles.hash(&mut hasher);
-        object.mesh.positions_mm.iter().for_each(|p| p.to_array().map(f32::to_bits).hash(&mut hasher));
+        let bits = |v: &Vec3| v.to_array().map(f32::to_bits);
+        object.mesh.positions_mm.iter().chain(&object.mesh.normals).for_each(|v| bits(v).hash(&mut hasher));
     }
     hasher.finish()
+}
+
+fn hash_material(material: &Material, hasher: &mut DefaultHasher) {
+    let Material { scattering, albedo, albedo_mix, normal, rho_s, roughness, .. } = material;
+    format!("{scattering:?} {:?} {albedo_mix}", albedo.factor).hash(hasher);
+    albedo.texture.iter().for_each(|texture| hash_texture(texture, hasher));
+    if let Some(map) = normal {
+        format!("{:?} {}", map.space, map.strength).hash(hasher);
+        hash_texture(&map.texture, hasher);
+    }
+    for map in [rho_s, roughness] {
+        format!("{} {}", map.offset, map.gain).hash(hasher);
+        map.texture.iter().for_each(|(texture, channel)| {
+            channel.hash(hasher);
+            hash_texture(texture, hasher);
+        });
+    }
+}
+
+fn hash_texture(texture: &Texture, hasher: &mut DefaultHasher) {
+    (texture.width(), texture.height()).hash(hasher);
+    for (x, y) in (0..PLACES).flat_map(|y| (0..PLACES).map(move |x| (x, y))) {
+        let place = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / PLACES as f32;
+        texture.sample(place).to_array().map(f32::to_bits).hash(hasher);
+    }
 }

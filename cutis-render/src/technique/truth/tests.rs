@@ -6,8 +6,9 @@ use crate::film::Checkpoint;
 use crate::settings::{Aov, AovSpace, Settings};
 use crate::transport::tests::{ball, even_environment, material, scene_of};
 use crate::{Frame, RenderError, Silent};
-use cutis_scene::{Light, Scene};
+use cutis_scene::{Light, NormalMap, NormalSpace, Scene, Texels, Texture};
 use glam::Vec3;
+use std::sync::Arc;
 
 fn lamp(radius_mm: f32) -> Light {
     Light::Point {
@@ -71,7 +72,13 @@ fn a_checkpoint_of_something_else_is_refused() {
     let scene = ball_in_light(0.4, 8.0);
     drawn(&scene, &settings);
     let kept = std::fs::read(&path).unwrap();
+    let mut reliefed = scene.clone();
+    let texels = Texels::LinearF32(vec![[0.5, 0.5, 1.0, 1.0]; 4]);
+    let texture = Arc::new(Texture::new(2, 2, texels));
+    reliefed.objects[0].material.normal =
+        Some(NormalMap { texture, space: NormalSpace::Tangent, strength: 1.0 });
     let others = [
+        ("relief", reliefed, settings.clone()),
         ("seed", scene.clone(), Settings { seed: 6, ..settings.clone() }),
         ("size", scene.clone(), Settings { width: 12, height: 16, ..settings.clone() }),
         ("light", ball_in_light(0.4, 9.0), settings.clone()),
@@ -148,8 +155,17 @@ fn threads_change_no_bit() {
     };
     let picture = Settings { aovs: vec![Aov::StandardError], ..small(8) };
     assert_same_bits(&of_threads(1, &picture), &of_threads(2, &picture));
-    // Packets that the threads count into one map, and paths at its texels. Not by `render`: which is quicker is a matter of
-    // time.
+    // Where exitance starts is told by counted work, not by a clock.
+    let map = Settings {
+        irradiance_size: 64,
+        aov_space: AovSpace::Texture,
+        aovs: vec![Aov::Exitance, Aov::StandardError],
+        ..small(2)
+    };
+    let [one, two] = [1, 2].map(|threads| of_threads(threads, &map).layers);
+    assert!(one[0].pixels.iter().any(|e| e.x > 0.0));
+    one.iter().zip(&two).for_each(|(one, two)| assert_eq!(one.pixels, two.pixels, "{}", one.name));
+    // Packets that the threads count into one map, and paths at its texels.
     let transport = crate::transport::path::Transport::new(&scene, 1).unwrap();
     let settings = Settings { irradiance_size: 128, ..small(2) };
     for start in [super::Start::Light, super::Start::Texel] {

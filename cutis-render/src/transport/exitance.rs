@@ -14,6 +14,7 @@ use cutis_scene::solids::{Meeting, Ray64};
 use glam::{DVec3, Vec2};
 use rayon::prelude::*;
 use std::f64::consts::PI;
+use std::ops::Range;
 
 /// Packets walked as one: each batch is added up in its own order.
 const BATCH: u64 = 4096;
@@ -58,22 +59,35 @@ impl<'a, 'b> Entrances<'a, 'b> {
         self.sums_mm2.last().copied().unwrap_or(0.0)
     }
 
-    /// Walks packets `first` to `first + count - 1` and tells `counter` of every exit, in their order.
-    pub fn walk(&self, seed: u64, first: u64, count: u64, mut counter: impl FnMut(&Exit)) {
+    /// Walks packets `first` to `first + count - 1` and tells `counter` of every exit, in their order. Returns how many random
+    /// numbers they took.
+    pub fn walk(&self, seed: u64, first: u64, count: u64, mut counter: impl FnMut(&Exit)) -> u64 {
+        let mut drawn = 0;
         let batches: Vec<u64> = (first..first + count).step_by(BATCH as usize).collect();
         for some in batches.chunks(4 * rayon::current_num_threads()) {
-            let exits: Vec<Vec<Exit>> = some
+            let walked: Vec<(Vec<Exit>, u64)> = some
                 .par_iter()
-                .map(|&begin| {
-                    let mut exits = Vec::new();
-                    for number in begin..(begin + BATCH).min(first + count) {
-                        self.packet(&mut Random::new(seed, number, 0), &mut exits);
-                    }
-                    exits
-                })
+                .map(|&begin| self.batch(seed, begin..(begin + BATCH).min(first + count)))
                 .collect();
-            exits.iter().flatten().for_each(&mut counter);
+            for (exits, work) in &walked {
+                exits.iter().for_each(&mut counter);
+                drawn += work;
+            }
         }
+        drawn
+    }
+
+    /// The exits of some packets, and how many random numbers they took.
+    fn batch(&self, seed: u64, packets: Range<u64>) -> (Vec<Exit>, u64) {
+        let mut exits = Vec::new();
+        let mut drawn = 0;
+        for number in packets {
+            let mut random = Random::new(seed, number, 0);
+            let begin = random.clone();
+            self.packet(&mut random, &mut exits);
+            drawn += random.drawn_since(&begin);
+        }
+        (exits, drawn)
     }
 
     /// A place, every part of all surfaces equally likely.

@@ -6,6 +6,8 @@ use std::f64::consts::{PI, TAU};
 
 /// 2^64 divided by the golden ratio, odd: the counter's step.
 const STEP: u64 = 0x9E37_79B9_7F4A_7C15;
+/// What times the step is 1, modulo 2^64: how often the counter went on is its way times this.
+const PER_STEP: u64 = 0xF1DE_83E1_9937_733D;
 
 /// The random numbers of one path.
 #[derive(Debug, Clone)]
@@ -18,6 +20,11 @@ impl Random {
     pub fn new(seed: u64, place: u64, sample: u64) -> Self {
         let mixed = mix(mix(seed.wrapping_add(STEP)) ^ place.wrapping_mul(STEP));
         Self { state: mix(mixed ^ sample.wrapping_add(1).wrapping_mul(STEP)) }
+    }
+
+    /// How many numbers were drawn since `begin`, a state of the same stream: what work the path was, whatever the machine.
+    pub fn drawn_since(&self, begin: &Self) -> u64 {
+        self.state.wrapping_sub(begin.state).wrapping_mul(PER_STEP)
     }
 
     fn bits(&mut self) -> u64 {
@@ -71,6 +78,17 @@ mod tests {
         // First outputs for state 1234567 as its reference implementation prints them.
         let mut random = Random { state: 1_234_567 };
         assert_eq!([random.bits(), random.bits()], [6_457_827_717_110_365_317, 3_203_168_211_198_807_973]);
+    }
+
+    #[test]
+    fn numbers_drawn_are_counted() {
+        let begin = Random::new(1, 2, 3);
+        let mut random = begin.clone();
+        for _ in 0..1000 {
+            random.unit();
+        }
+        random.direction();
+        assert_eq!(random.drawn_since(&begin), 1002);
     }
 
     #[test]

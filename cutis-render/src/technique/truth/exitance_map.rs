@@ -12,7 +12,6 @@ use cutis_scene::Object;
 use cutis_scene::solids::Meeting;
 use glam::{DVec3, Vec2};
 use rayon::prelude::*;
-use std::time::Instant;
 
 /// Width and height of the map that decides where to start, and samples per texel of it.
 const PILOT_SIZE: usize = 64;
@@ -49,8 +48,8 @@ pub struct ExitanceMap {
 
 /// One way to start, on its way.
 trait Estimator {
-    /// Adds samples `first` to `first + count - 1` per texel.
-    fn add(&mut self, first: u64, count: u64);
+    /// Adds samples `first` to `first + count - 1` per texel; returns how many random numbers they took.
+    fn add(&mut self, first: u64, count: u64) -> u64;
     /// Exitance and its standard error at a texel, W/m².
     fn texel(&self, texel: usize) -> (DVec3, DVec3);
 }
@@ -125,19 +124,19 @@ fn median_noise(texels: impl Iterator<Item = (DVec3, DVec3)>) -> f64 {
     if noise.is_empty() { f64::INFINITY } else { *noise.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
-/// The start with less variance per second, by a short run of each on a small map: squared noise times seconds. With more
-/// texels both grow alike: packets are shared by more, and paths are wanted for more.
+/// The start with less variance for the same work, by a short run of each on a small map: squared noise times the random
+/// numbers that were drawn, which any machine counts alike. With more texels both grow alike: packets are shared by more, and
+/// paths are wanted for more.
 fn quicker(transport: &Transport, settings: &Settings) -> Start {
     let atlas = Atlas::new(&transport.scene.objects[0], PILOT_SIZE);
     let cost = |estimator: &mut dyn Estimator| {
-        let begin = Instant::now();
-        estimator.add(0, PILOT_SAMPLES);
+        let drawn = estimator.add(0, PILOT_SAMPLES) as f64;
         let noise = median_noise((0..PILOT_SIZE * PILOT_SIZE).map(|texel| estimator.texel(texel)));
-        noise * noise * begin.elapsed().as_secs_f64()
+        noise * noise * drawn
     };
     let light = cost(&mut FromLights::new(transport, PILOT_SIZE, settings.seed));
     let texel = cost(&mut FromTexels::new(transport, &atlas, settings.seed));
-    tracing::debug!("squared noise times seconds: {light:.2e} from lights, {texel:.2e} from texels");
+    tracing::debug!("squared noise times numbers drawn: {light:.2e} from lights, {texel:.2e} from texels");
     if light < texel { Start::Light } else { Start::Texel }
 }
 
@@ -174,17 +173,17 @@ impl<'a, 'b> FromLights<'a, 'b> {
 }
 
 impl Estimator for FromLights<'_, '_> {
-    fn add(&mut self, first: u64, count: u64) {
+    fn add(&mut self, first: u64, count: u64) -> u64 {
         let Self { entrances, size, seed, triangles, sums, squares, .. } = self;
         let per_sample = (*size * *size) as u64;
+        self.packets += count * per_sample;
         entrances.walk(*seed, first * per_sample, count * per_sample, |exit| {
             if exit.object == 0 && exit.triangle < *triangles {
                 let texel = texel_of(exit.uv, *size);
                 sums[texel] += exit.flux;
                 squares[texel] += exit.flux * exit.flux;
             }
-        });
-        self.packets += count * per_sample;
+        })
     }
 
     fn texel(&self, texel: usize) -> (DVec3, DVec3) {
@@ -217,17 +216,20 @@ impl<'a, 'b> FromTexels<'a, 'b> {
 }
 
 impl Estimator for FromTexels<'_, '_> {
-    fn add(&mut self, first: u64, count: u64) {
+    fn add(&mut self, first: u64, count: u64) -> u64 {
         let Self { transport, places, estimates, seed } = self;
-        estimates.par_iter_mut().with_min_len(16).zip(places).enumerate().for_each(
-            |(texel, (estimate, place))| {
-                let Some((meeting, place_mm)) = place else { return };
-                for sample in first..first + count {
-                    let mut random = Random::new(*seed, texel as u64, sample);
-                    estimate.add(of_place(transport, *meeting, *place_mm, &mut random));
-                }
-            },
-        );
+        let texels = estimates.par_iter_mut().with_min_len(16).zip(places).enumerate();
+        let add_to = |(texel, (estimate, place)): (usize, (&mut Estimate, &mut Option<(Meeting, DVec3)>))| {
+            let Some((meeting, place_mm)) = place else { return 0 };
+            let one = |sample| {
+                let mut random = Random::new(*seed, texel as u64, sample);
+                let begin = random.clone();
+                estimate.add(of_place(transport, *meeting, *place_mm, &mut random));
+                random.drawn_since(&begin)
+            };
+            (first..first + count).map(one).sum()
+        };
+        texels.map(add_to).sum()
     }
 
     fn texel(&self, texel: usize) -> (DVec3, DVec3) {

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{names, run, stderr, stdout};
+use common::{assert_refused, names, run, stderr, stdout};
 use std::path::Path;
 use std::process::Output;
 
@@ -141,12 +141,7 @@ fn words_that_make_no_sense_are_refused_before_the_work() {
         (&["bad.toml"], "bad.toml"),
     ];
     for (args, words) in cases {
-        let output = run(folder.path(), &[&["compare"], *args].concat());
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
-        assert!(output.stdout.is_empty(), "{args:?}");
-        let first = said.lines().next().expect("something is said");
-        assert!(first.starts_with("error: ") && first.contains(words), "{args:?}: {said}");
+        assert_refused(folder.path(), &[&["compare"], *args].concat(), words);
     }
     assert_eq!(names(folder.path()), ["bad.toml"], "nothing was written");
 }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{TINY, names, run, stderr, stdout};
+use common::{TINY, assert_refused, json_of, names, number, run, stderr, stdout};
 use image::{ImageBuffer, Rgb, Rgb32FImage, RgbImage};
 use std::path::Path;
 
@@ -16,13 +16,7 @@ fn write_light(folder: &Path, name: &str, light: f32) {
 }
 
 fn json(folder: &Path, args: &[&str]) -> serde_json::Value {
-    let output = run(folder, &[&["diff", "--json"], args].concat());
-    assert_eq!(output.status.code(), Some(0), "{args:?}: {}", stderr(&output));
-    serde_json::from_str(&stdout(&output)).expect("one JSON object and nothing else")
-}
-
-fn number(value: &serde_json::Value) -> f64 {
-    value.as_f64().expect("a number")
+    json_of(folder, "diff", args)
 }
 
 #[test]
@@ -101,9 +95,8 @@ fn layers_of_a_rendered_exr_can_be_compared() {
     let (picture, specular) = (of(&[]), of(&["--layer", "specular"]));
     assert_eq!(specular["layer"], "specular");
     assert!(number(&picture["rmse"]) > 0.0 && number(&picture["rmse"]) != number(&specular["rmse"]));
-    let output = run(folder.path(), &["diff", "a.exr", "b.exr", "--layer", "depth"]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(stderr(&output).contains("a.exr: picture: has no layer 'depth'; it has normal, specular"));
+    let words = "a.exr: picture: has no layer 'depth'; it has normal, specular";
+    assert_refused(folder.path(), &["diff", "a.exr", "b.exr", "--layer", "depth"], words);
 }
 
 #[test]
@@ -131,14 +124,7 @@ fn what_cannot_be_compared_is_refused_in_one_line() {
         (&["a.png"], "<REFERENCE>"),
     ];
     for (args, words) in cases {
-        let output = run(folder.path(), &[&["diff"], *args].concat());
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
-        assert!(output.stdout.is_empty(), "{args:?}");
-        let mut lines = said.lines();
-        let first = lines.next().expect("something is said");
-        assert!(first.starts_with("error: ") && first.contains(words), "{args:?}: {said}");
-        assert!(lines.all(|line| line.starts_with("help: ")), "{args:?}: {said}");
+        assert_refused(folder.path(), &[&["diff"], *args].concat(), words);
     }
     assert_eq!(names(folder.path()), before, "nothing was written");
 }

@@ -2,24 +2,15 @@
 
 mod common;
 
-use common::{names, run, stderr, stdout};
+use common::{json_of, number, run, stderr, stdout};
 use serde_json::Value;
 use std::fs;
-use std::path::Path;
-
-fn json_in(folder: &Path, words: &[&str]) -> Value {
-    let output = run(folder, &[&["profile", "--json"], words].concat());
-    assert!(output.status.success(), "{}", stderr(&output));
-    serde_json::from_str(&stdout(&output)).expect("one JSON object and nothing else")
-}
 
 fn json(words: &[&str]) -> Value {
-    json_in(tempfile::tempdir().expect("a folder").path(), words)
+    json_of(tempfile::tempdir().expect("a folder").path(), "profile", words)
 }
 
-fn number(value: &Value) -> f64 {
-    value.as_f64().unwrap_or_else(|| panic!("{value} is a number"))
-}
+const SHEET: [&str; 2] = ["--layer", "mu_a=0.05,mu_s=4,n=1.4,d=1.5"];
 
 const TWO_LAYERS: &str = r#"
 name = "two layers"
@@ -91,7 +82,7 @@ fn a_preset_that_is_a_kernel_comes_as_it_is() {
 fn layers_from_words_and_from_a_file_are_the_same() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("two.toml"), TWO_LAYERS).expect("written");
-    let file = json_in(folder.path(), &["two.toml", "--channel", "g", "--gaussians", "3"]);
+    let file = json_of(folder.path(), "profile", &["two.toml", "--channel", "g", "--gaussians", "3"]);
     let words = json(&[
         "--layer",
         "mu_a=0.2,mu_s=24,g=0.8,n=1.4,d=0.5",
@@ -140,120 +131,6 @@ fn an_explanation_tells_lengths_apart_and_says_where_diffusion_fails() {
 }
 
 #[test]
-fn plots_are_pictures_with_lines_and_words() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let words = ["profile", "skin1", "--gaussians", "2", "--plot"];
-    for name in ["a.svg", "a.png"] {
-        let output = run(folder.path(), &[&words[..], &[name]].concat());
-        assert!(output.status.success(), "{}", stderr(&output));
-    }
-    let svg = fs::read_to_string(folder.path().join("a.svg")).expect("written");
-    assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
-    for told in ["skin1: dipole", "r R(r) [1/mm]", "R(r) [1/mm²]", "k [1/mm]", "Jensen"] {
-        assert!(svg.contains(told), "{told}");
-    }
-    assert!(svg.matches("<polyline").count() > 20);
-    let picture = image::open(folder.path().join("a.png")).expect("a PNG").to_rgb8();
-    assert_eq!(picture.dimensions(), (2400, 1800));
-    let like = |wanted: [u8; 3]| {
-        let near = |p: &&image::Rgb<u8>| p.0.iter().zip(wanted).all(|(a, b)| a.abs_diff(b) < 40);
-        picture.pixels().filter(near).count()
-    };
-    // Each channel's lines are there, and words in dark ink: in the title's strip nothing else is dark.
-    for pen in [[196, 30, 30], [20, 130, 50], [30, 70, 190]] {
-        assert!(like(pen) > 1000, "{pen:?}");
-    }
-    let title = image::imageops::crop_imm(&picture, 0, 0, 2400, 60).to_image();
-    assert!(title.pixels().filter(|p| p.0[0] < 100).count() > 500, "the title has ink");
-    assert_eq!(names(folder.path()), ["a.png", "a.svg"]);
-}
-
-#[test]
-fn every_export_is_what_its_name_says() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let mut words = vec!["profile", "skin1", "--gaussians", "3"];
-    for name in ["k.json", "k.csv", "k.wgsl", "k.glsl", "k.hlsl", "m.mtlx", "m.gltf"] {
-        words.extend(["--export", name]);
-    }
-    let output = run(folder.path(), &words);
-    assert!(output.status.success(), "{}", stderr(&output));
-    let read = |name: &str| fs::read_to_string(folder.path().join(name)).expect("written");
-    let kernel: Value = serde_json::from_str(&read("k.json")).expect("JSON");
-    assert_eq!(kernel["weights"][0].as_array().map(Vec::len), Some(3));
-    assert!(read("k.csv").contains("variance_mm2,weight_red,weight_green,weight_blue"));
-    assert!(
-        read("k.wgsl").contains("array<vec3<f32>, 3>") && read("k.glsl").contains("vec3 CUTIS_WEIGHTS[3]")
-    );
-    assert!(read("k.hlsl").contains("static const float3 CUTIS_WEIGHTS[3]"));
-    assert!(read("m.mtlx").contains("open_pbr_surface") && read("m.mtlx").contains("lin_rec709"));
-    let gltf: Value = serde_json::from_str(&read("m.gltf")).expect("JSON");
-    assert_eq!(gltf["asset"]["version"], "2.0");
-    assert!(!read("m.gltf").contains("scatter"), "drafts stay behind their flag");
-    assert!(stdout(&output).contains("loss"), "{}", stdout(&output));
-}
-
-#[test]
-fn formats_can_be_named_and_translations_are_reported() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let report = json_in(
-        folder.path(),
-        &[
-            "marble",
-            "--gaussians",
-            "3",
-            "--drafts=scatter",
-            "--export",
-            "u.json",
-            "--export",
-            "d",
-            "--export-as",
-            "unreal",
-            "--export-as",
-            "gltf",
-        ],
-    );
-    let translations = report["translations"].as_array().expect("a list");
-    assert_eq!((&translations[0]["target"], &translations[1]["target"]), (&"unreal".into(), &"gltf".into()));
-    for translation in translations {
-        for c in 0..3 {
-            let loss = &translation["loss"][c];
-            let wide = number(&loss["wide"]["relative_rms_power_error"]);
-            assert!((0.001..0.5).contains(&wide), "{loss}");
-            assert!(number(&loss["relative_change_of_total"]).abs() < 1e-9);
-        }
-        let fields = translation["fields"].as_array().expect("a list");
-        assert!(
-            fields.iter().all(|f| f["unit"].is_string() && f["meaning"].is_string() && !f["value"].is_null())
-        );
-    }
-    let draft = fs::read_to_string(folder.path().join("d")).expect("written");
-    assert!(draft.contains("KHR_materials_scatter"), "{draft}");
-}
-
-const SHEET: [&str; 2] = ["--layer", "mu_a=0.05,mu_s=4,n=1.4,d=1.5"];
-
-#[test]
-fn outputs_are_written_all_or_none() {
-    let folder = tempfile::tempdir().expect("a folder");
-    fs::create_dir(folder.path().join("sub")).expect("made");
-    for [one, other] in [["k.json", "./k.json"], ["k.json", "sub/../k.json"], ["sub/k.csv", "sub/k.csv"]] {
-        let output = run(folder.path(), &["profile", "skin1", "--export", one, "--export", other]);
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(said.contains(one) && said.contains(other) && said.contains("are one file"), "{said}");
-    }
-    // The plot is an output like any other.
-    let plot = ["profile", "skin1", "--plot", "a.svg", "--export", "a.svg", "--export-as", "json"];
-    assert!(stderr(&run(folder.path(), &plot)).contains("are one file"));
-    assert_eq!(names(folder.path()), ["sub"]);
-    // A name too long for the file system stands for any trouble with the second file.
-    let name = "x".repeat(300) + ".csv";
-    let output = run(folder.path(), &["profile", "skin1", "--export", "k.json", "--export", &name]);
-    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
-    assert_eq!(names(folder.path()), ["sub"], "neither is there");
-}
-
-#[test]
 fn layers_that_end_tell_what_comes_out_below() {
     let report = json(&[&SHEET[..], &["--gaussians", "2"]].concat());
     let total = number(&report["total_transmittance"]);
@@ -273,24 +150,6 @@ fn layers_that_end_tell_what_comes_out_below() {
     assert!((total / simulated - 1.0).abs() < 0.1, "{total} against {simulated}");
     let endless = json(&["skin1", "--channel", "r", "--gaussians", "2"]);
     assert!(endless["total_transmittance"].is_null() && endless["radial_profile"].is_null());
-}
-
-#[test]
-fn transmittance_is_drawn_printed_and_exported() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let files = ["--plot", "a.svg", "--export", "a.csv", "--export-as", "radial-csv", "--gaussians", "2"];
-    let output = run(folder.path(), &[&["profile"], &SHEET[..], &files].concat());
-    assert!(output.status.success(), "{}", stderr(&output));
-    assert!(stdout(&output).contains("T_d 0."), "{}", stdout(&output));
-    let read = |name: &str| fs::read_to_string(folder.path().join(name)).expect("written");
-    assert!(read("a.svg").contains("all channels, transmitted"));
-    let csv = read("a.csv");
-    assert_eq!(csv.lines().next(), Some("r_mm,reflectance_per_mm2,transmittance_per_mm2"));
-    assert_eq!(csv.lines().count(), 65);
-    let files = ["--export", "b.csv", "--export-as", "radial-csv", "--gaussians", "2"];
-    assert!(run(folder.path(), &[&["profile", "skin1"], &files[..]].concat()).status.success());
-    let header = "r_mm,reflectance_r_per_mm2,reflectance_g_per_mm2,reflectance_b_per_mm2";
-    assert_eq!(read("b.csv").lines().next(), Some(header));
 }
 
 #[test]
@@ -395,108 +254,4 @@ fn seven_taps_bound_the_variances() {
     assert!(variances.windows(2).all(|v| v[1] <= 4.0 * v[0] * (1.0 + 1e-9)), "{variances:?}");
     // Cream's shortest mean free path is that of red: 1/(7.38 + 0.0002) mm.
     assert!(variances[0] <= (1.0f64 / 7.3802).powi(2) * (1.0 + 1e-9), "{variances:?}");
-}
-
-#[test]
-fn nonsense_ends_with_code_2_and_one_clear_line() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let cases: &[(&[&str], &str)] = &[
-        (&[], "give a MATERIAL"),
-        (&["skin3"], "the nearest name is \"skin1\""),
-        (&["nowhere.toml"], "nowhere.toml: there is no such file"),
-        (&["skin1", "--gaussians", "0"], "--gaussians must be 1 to 16, got 0"),
-        (&["skin1", "--gaussians", "17"], "--gaussians must be 1 to 16, got 17"),
-        (&["skin1", "--channel", "x"], "[possible values: r, g, b]"),
-        (&["skin1", "--fit", "magic"], "optimal, energy"),
-        (&["skin1", "--source", "tripole"], "dipole, better-dipole, multipole, beam, monte-carlo"),
-        (&["skin1", "--source", "monte-carlo", "--photons", "5"], "--photons must be 2048 to 10^12, got 5"),
-        (&["skin1", "--source", "beam", "--roughness", "0.3"], "beam knows smooth surfaces only"),
-        (&["skin1", "--roughness", "2"], "--roughness must be 0 to 1, got 2"),
-        (&["spectralon", "--source", "monte-carlo"], "light would walk in it for ever"),
-        (&["skin1", "--beam", "1e-18"], "--beam must be at least"),
-        (&["skin1", "--beam", "0"], "--beam must be above 0 mm, got 0"),
-        (&["skin1", "--fit", "fast", "--seven-tap"], "nothing to bound"),
-        (&["skin1", "--source", "beam", "--fit", "fast"], "has to know the poles"),
-        (&["skin1", "--wavelength", "550"], "has no spectra"),
-        (&["skin1", "--wavelength", "NaN"], "above 0 nm"),
-        (&["skin1", "--layer", "mu_a=1,mu_s=1"], "--layer"),
-        (&["three-layer-skin", "--source", "dipole"], "finished kernel without layers: --source"),
-        (&["three-layer-skin", "--beam", "0.1"], "finished kernel without layers: --beam"),
-        (&["skin1", "--plot", "a.jpg"], "a.jpg: a plot is written as .svg or .png"),
-        (&["skin1", "--plot", "no/a.png"], "there is no folder no"),
-        (&["skin1", "--export", "a.xyz"], "a.xyz: the extension must be"),
-        (&["skin1", "--export", "a", "--export-as", "maya"], "unreal, hdrp, blender, openpbr, gltf"),
-        (&["skin1", "--export", "a", "--export-as", "csv", "--export-as", "csv"], "2 times for 1 files"),
-        (&["skin1", "--channel", "r", "--export", "a.mtlx"], "needs all three channels"),
-        (&["--layer", "mu_a=1,mu_s=0"], "layer 1: sigma_s_reduced_per_mm must be at least"),
-        (&["--layer", "mu_a=1,mu_s=2,g=1.5"], "layer 1: sigma_s_reduced_per_mm must not be negative"),
-        (&["--layer", "mu_a=NaN,mu_s=2"], "layer 1: sigma_a_per_mm must be finite"),
-        (&["--layer", "mu_a=0.1,mu_s=2,d=5", "--source", "dipole"], "use multipole or monte-carlo"),
-    ];
-    for (words, told) in cases {
-        let output = run(folder.path(), &[&["profile"], *words].concat());
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{words:?}: {said}");
-        assert!(output.stdout.is_empty(), "{words:?}");
-        let mut lines = said.lines();
-        let first = lines.next().expect("something is said");
-        assert!(first.starts_with("error: ") && first.contains(told), "{words:?}: {said}");
-        assert!(lines.all(|line| line.starts_with("help: ")), "{words:?}: {said}");
-    }
-    assert!(names(folder.path()).is_empty(), "nothing was written");
-}
-
-#[test]
-fn hostile_files_are_refused_by_name_and_place() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let one = "[[layer]]\nsigma_a_per_mm = 0.1\nsigma_s_reduced_per_mm = 2\nrefractive_index = 1.4\n";
-    let many = one.repeat(65);
-    let long = format!("# {}\n{one}", "x".repeat(1 << 20));
-    let cases: &[(&str, &str)] = &[
-        ("", "bad.toml: there must be 1 to 64 layers, got 0"),
-        ("layer = 5", "bad.toml, line 1"),
-        ("\n\n[[layer]]\ncolour = 1", "line 4: unknown field `colour`"),
-        (
-            "[[layer]]\nsigma_a_per_mm = [1, 2]\nrefractive_index = 1",
-            "line 2: expected a number, or an array of three",
-        ),
-        (
-            "[[layer]]\nsigma_a_per_mm = 1\nrefractive_index = 1.4",
-            "layer 1: give either sigma_s_reduced_per_mm, or",
-        ),
-        (
-            "[[layer]]\nsigma_a_per_mm = 1\nsigma_s_per_mm = 2\ng = 1\nrefractive_index = 1.4",
-            "layer 1: g must lie",
-        ),
-        (
-            "[[layer]]\nsigma_a_per_mm = nan\nsigma_s_reduced_per_mm = 2\nrefractive_index = 1.4",
-            "must be finite",
-        ),
-        ("[[layer]\nx", "line 1"),
-        (&many, "1 to 64 layers, got 65"),
-        (&long, "is longer than"),
-    ];
-    for (text, told) in cases {
-        fs::write(folder.path().join("bad.toml"), text).expect("written");
-        let output = run(folder.path(), &["profile", "bad.toml", "--json"]);
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{told}: {said}");
-        assert!(output.stdout.is_empty() && said.lines().count() == 1, "{said}");
-        assert!(said.contains("bad.toml") && said.contains(told), "{told}: {said}");
-    }
-    fs::write(folder.path().join("bad.toml"), [0xff, 0xfe, 0x00]).expect("written");
-    assert!(stderr(&run(folder.path(), &["profile", "bad.toml"])).contains("not text in UTF-8"));
-    fs::create_dir(folder.path().join("folder.toml")).expect("made");
-    assert!(stderr(&run(folder.path(), &["profile", "folder.toml"])).contains("is not a file"));
-}
-
-#[test]
-fn the_ends_of_what_a_medium_may_be_are_drawn_and_translated() {
-    let folder = tempfile::tempdir().expect("a folder");
-    for words in ["mu_a=1e9,mu_s=1e-9", "mu_a=0,mu_s=1e9", "mu_a=1e-12,mu_s=1e-9,n=3"] {
-        let files = ["--gaussians", "2", "--plot", "a.svg", "--export", "a.mtlx", "--export", "a.gltf"];
-        let report = json_in(folder.path(), &[&["--layer", words], &files[..]].concat());
-        assert!(number(&report["fit"]["relative_rms_power_error"]) < 1.0, "{words}");
-        assert!(report["translations"][0]["loss"][0]["wide"]["relative_rms_power_error"].is_number());
-    }
 }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{TINY, names, run, stderr, stdout};
+use common::{TINY, assert_refused, names, run, stderr, stdout};
 use exr::prelude::{ReadChannels, ReadLayers};
 use std::path::Path;
 
@@ -113,8 +113,7 @@ fn a_failed_run_leaves_the_old_picture() {
     let folder = tempfile::tempdir().expect("a folder");
     std::fs::write(folder.path().join("cutis.png"), "old").expect("written");
     std::fs::write(folder.path().join("bad.obj"), "v 1 2 nan\nf 1 1 1\n").expect("written");
-    let output = run(folder.path(), &["render", "bad.obj", "--size", "32x32"]);
-    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert_refused(folder.path(), &["render", "bad.obj", "--size", "32x32"], "bad.obj");
     assert_eq!(std::fs::read_to_string(folder.path().join("cutis.png")).expect("there"), "old");
     assert_eq!(names(folder.path()), ["bad.obj", "cutis.png"]);
 }

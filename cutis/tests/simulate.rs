@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{run, stderr, stdout};
+use common::{assert_refused, run, stderr, stdout};
 use serde_json::Value;
 
 const SLAB: &str = "mu_a=1,mu_s=9,g=0.75,n=1.4,d=0.2";
@@ -59,10 +59,6 @@ fn nonsense_ends_with_code_2_and_one_clear_line() {
         (vec!["--layer", SLAB, "--rings", "0"], "--rings must be 1 to 100000, got 0"),
         (vec![], "--layer"),
     ] {
-        let output = run(folder.path(), &[vec!["simulate"], words].concat());
-        assert_eq!(output.status.code(), Some(2), "{told}");
-        let said = stderr(&output);
-        let first = said.lines().next().unwrap_or_default();
-        assert!(first.contains(told), "{first} does not say {told}");
+        assert_refused(folder.path(), &[vec!["simulate"], words].concat(), told);
     }
 }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{cutis, names, run, stderr, stdout};
+use common::{assert_refused, cutis, names, run, stderr, stdout};
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
@@ -69,15 +69,8 @@ fn a_damaged_truth_is_refused_in_words() {
     let file = folder.path().join("sphere.exr");
     let whole = std::fs::read(kept().join("sphere.exr")).expect("the truth is kept");
     let refused = |words: &str| {
-        let output = sphere(folder.path(), &[]);
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{said}");
-        assert!(output.stdout.is_empty());
-        let first = said.lines().next().expect("something is said");
-        assert!(
-            first.starts_with("error: ") && first.contains("sphere.exr") && first.contains(words),
-            "{said}"
-        );
+        let said = assert_refused(folder.path(), &["validate", "--only", "sphere", "--truth", "."], words);
+        assert!(said.contains("sphere.exr"), "{said}");
     };
     refused("there is no such file");
     std::fs::write(&file, &whole[..whole.len() / 2]).expect("written");
@@ -110,11 +103,7 @@ fn words_that_make_no_sense_are_refused_before_the_work() {
         (&["--json", "--table"], "cannot be used with"),
     ];
     for (args, words) in cases {
-        let output = run(folder.path(), &[&["validate"], *args].concat());
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
-        let first = said.lines().next().expect("something is said");
-        assert!(first.starts_with("error: ") && first.contains(words), "{args:?}: {said}");
+        assert_refused(folder.path(), &[&["validate"], *args].concat(), words);
     }
     assert!(names(folder.path()).is_empty(), "nothing was written");
 }

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{cutis, names, run, stderr, stdout};
+use common::{assert_refused, cutis, names, run, stderr, stdout};
 use std::process::Stdio;
 
 #[test]
@@ -70,14 +70,7 @@ fn nonsense_ends_with_code_2_and_one_clear_line() {
         (&["--no-such-flag"], "--no-such-flag"),
     ];
     for (args, words) in cases {
-        let output = run(folder.path(), &[&["render"], *args].concat());
-        let said = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
-        assert!(output.stdout.is_empty(), "{args:?}");
-        let mut lines = said.lines();
-        let first = lines.next().expect("something is said");
-        assert!(first.starts_with("error: ") && first.contains(words), "{args:?}: {said}");
-        assert!(lines.all(|line| line.starts_with("help: ")), "{args:?}: {said}");
+        assert_refused(folder.path(), &[&["render"], *args].concat(), words);
     }
     assert_eq!(names(folder.path()), ["bad.toml", "map.png"], "nothing was written");
 }

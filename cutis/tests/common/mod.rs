@@ -45,6 +45,35 @@ pub fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).expect("text")
 }
 
+/// Runs the program and asserts that it refuses: code 2, nothing on stdout, on stderr one error with these words and at most
+/// help below it. Returns what it said.
+#[allow(dead_code, reason = "not every test file needs it")]
+pub fn assert_refused(folder: &Path, args: &[&str], words: &str) -> String {
+    let output = run(folder, args);
+    let said = stderr(&output);
+    assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
+    assert!(output.stdout.is_empty(), "{args:?}");
+    let mut lines = said.lines();
+    let first = lines.next().expect("something is said");
+    assert!(first.starts_with("error: ") && first.contains(words), "{args:?}: {said}");
+    assert!(lines.all(|line| line.starts_with("help: ")), "{args:?}: {said}");
+    said
+}
+
+/// The one object that a command prints with `--json`.
+#[allow(dead_code, reason = "not every test file needs it")]
+pub fn json_of(folder: &Path, command: &str, words: &[&str]) -> serde_json::Value {
+    let output = run(folder, &[&[command, "--json"], words].concat());
+    assert!(output.status.success(), "{words:?}: {}", stderr(&output));
+    serde_json::from_str(&stdout(&output)).expect("one JSON object and nothing else")
+}
+
+/// A number of such an object.
+#[allow(dead_code, reason = "not every test file needs it")]
+pub fn number(value: &serde_json::Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
 /// Names in a folder, sorted.
 #[allow(dead_code, reason = "not every test file looks")]
 pub fn names(folder: &Path) -> Vec<String> {

@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 /// Packets walked as one: each batch is added up in its own order.
-const BATCH: u64 = 4096;
+const BATCH: u64 = 512;
 /// Times that light may leave one body and meet another surface.
 const OUTSIDE_MAX: u32 = 256;
 /// Times that light may be thrown back by a surface from within.
@@ -64,7 +64,7 @@ impl<'a, 'b> Entrances<'a, 'b> {
     pub fn walk(&self, seed: u64, first: u64, count: u64, mut counter: impl FnMut(&Exit)) -> u64 {
         let mut drawn = 0;
         let batches: Vec<u64> = (first..first + count).step_by(BATCH as usize).collect();
-        for some in batches.chunks(4 * rayon::current_num_threads()) {
+        for some in batches.chunks(64 * rayon::current_num_threads()) {
             let walked: Vec<(Vec<Exit>, u64)> = some
                 .par_iter()
                 .map(|&begin| self.batch(seed, begin..(begin + BATCH).min(first + count)))

@@ -1,8 +1,10 @@
 //! Radiant exitance of the scanned head in the medium skin1, lit from the front: how long until a texel of 512 x 512 is known to
-//! 2 %, from the lamp and from the texels, and what a second thread brings. Runs of minutes, each taken once: no criterion.
+//! 2 %, from the lamp and from the texels, and what a second thread brings, beside what it brings to sums that share nothing.
+//! Runs of minutes, each taken once: no criterion.
 
 use cutis_render::technique::truth::{ExitanceMap, Start};
 use cutis_render::transport::path::Transport;
+use cutis_render::transport::random::Random;
 use cutis_render::{Settings, Silent};
 use cutis_scene::validation::SCENES;
 use std::time::Instant;
@@ -24,6 +26,19 @@ fn timed(transport: &Transport, start: Start, size: u32, threads: usize) -> (Exi
     (map, begin.elapsed().as_secs_f64())
 }
 
+/// Seconds that two sums of random numbers take on so many threads: all that a second thread can bring on this machine.
+fn sums(threads: usize) -> f64 {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads are at hand");
+    let sum = |stream: u64| {
+        let mut random = Random::new(1, stream, 0);
+        (0..400_000_000).map(|_| random.unit()).sum::<f64>()
+    };
+    let begin = Instant::now();
+    let (a, b) = pool.install(|| rayon::join(|| sum(1), || sum(2)));
+    assert!((a / b - 1.0).abs() < 0.01, "they are random: {a} and {b}");
+    begin.elapsed().as_secs_f64()
+}
+
 fn main() {
     let head = SCENES.iter().find(|scene| scene.name == "head-front").expect("it is one of them");
     if let Some(missing) = head.missing() {
@@ -33,6 +48,8 @@ fn main() {
     let scene = head.make().expect("the head can be read");
     let transport = Transport::new(&scene, 1).expect("the head can be simulated");
     let threads = rayon::current_num_threads();
+    let [one, two] = [1, 2].map(sums);
+    println!("sums: {one:.2} s on 1 thread, {two:.2} s on 2: ratio {:.2}", one / two);
     for start in [Start::Light, Start::Texel] {
         let (map, seconds) = timed(&transport, start, SIZE, threads);
         let noise = map.noise();

@@ -75,7 +75,7 @@ fn by_irradiance_size(studio: &Scene) -> Vec<Case> {
 /// Key; key and rim; both and their mirror images.
 fn by_lights(studio: &Scene) -> Vec<Case> {
     let mirrored = studio.lights.iter().map(mirror_image);
-    let lights: Vec<Light> = studio.lights.iter().copied().chain(mirrored).collect();
+    let lights: Vec<Light> = studio.lights.iter().cloned().chain(mirrored).collect();
     assert_eq!(lights.len(), 4, "the studio has two lights");
     let case = |count: usize| {
         Case::new("lights", count, Scene { lights: lights[..count].to_vec(), ..studio.clone() })
@@ -121,7 +121,7 @@ fn studio(triangles: usize) -> Scene {
 
 /// The same light on the other side of the face.
 fn mirror_image(light: &Light) -> Light {
-    let mut light = *light;
+    let mut light = light.clone();
     match &mut light {
         Light::Directional { dir_to_light, .. } => dir_to_light.x = -dir_to_light.x,
         Light::Point { position_mm, .. } => position_mm.x = -position_mm.x,

@@ -25,9 +25,10 @@ fn head_in_the_studio() -> Scene {
 
 /// The same light as a point, whose shadows are sharp: all or nothing.
 fn without_extent(light: &Light) -> Light {
-    let mut light = *light;
+    let mut light = light.clone();
     match &mut light {
         Light::Point { radius_mm, .. } | Light::Spot { radius_mm, .. } => *radius_mm = 0.0,
+        Light::Projector(projector) => projector.radius_mm = 0.0,
         Light::Directional { angular_radius_rad, .. } => *angular_radius_rad = 0.0,
     }
     light

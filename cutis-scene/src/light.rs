@@ -3,10 +3,11 @@
 //! Units: irradiance in W/m², intensity in W/sr, distances in mm and turned to metres where the inverse square
 //! is taken, so that an intensity of 1 gives an irradiance of 1 at one metre.
 
+use crate::Projector;
 use glam::Vec3;
 
 /// A light and its place in the scene. Colours are linear Rec. 709.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone)]
 pub enum Light {
     /// So far away that it comes from one direction.
     Directional {
@@ -41,6 +42,8 @@ pub enum Light {
         /// Radius of the source, mm.
         radius_mm: f32,
     },
+    /// A lamp that throws an image.
+    Projector(Projector),
 }
 
 /// A light as one point sees it.
@@ -58,6 +61,11 @@ impl Light {
     /// The light's centre as seen from `point_mm`.
     pub fn sample(&self, point_mm: Vec3) -> LightSample {
         match *self {
+            Light::Projector(ref projector) => {
+                let white = by_inverse_square(point_mm, projector.position_mm, projector.intensity_w_per_sr);
+                let filter = projector.filter(-white.dir_to_light);
+                LightSample { irradiance_w_per_m2: white.irradiance_w_per_m2 * filter, ..white }
+            }
             Light::Directional { dir_to_light, irradiance_w_per_m2, .. } => {
                 LightSample { dir_to_light, distance_mm: f32::INFINITY, irradiance_w_per_m2 }
             }
@@ -91,7 +99,9 @@ impl Light {
                 let dir_to_light = (centre.dir_to_light + aside * angular_radius_rad.tan()).normalize();
                 LightSample { dir_to_light, ..centre }
             }
-            Light::Point { radius_mm, .. } | Light::Spot { radius_mm, .. } => {
+            Light::Point { radius_mm, .. }
+            | Light::Spot { radius_mm, .. }
+            | Light::Projector(Projector { radius_mm, .. }) => {
                 let to_light = centre.dir_to_light * centre.distance_mm + aside * radius_mm;
                 let distance_mm = to_light.length().max(f32::MIN_POSITIVE);
                 LightSample { dir_to_light: to_light / distance_mm, distance_mm, ..centre }
@@ -103,7 +113,9 @@ impl Light {
     pub fn has_extent(&self) -> bool {
         match *self {
             Light::Directional { angular_radius_rad, .. } => angular_radius_rad > 0.0,
-            Light::Point { radius_mm, .. } | Light::Spot { radius_mm, .. } => radius_mm > 0.0,
+            Light::Point { radius_mm, .. }
+            | Light::Spot { radius_mm, .. }
+            | Light::Projector(Projector { radius_mm, .. }) => radius_mm > 0.0,
         }
     }
 }

@@ -28,6 +28,8 @@ fn scene_files() {
     let outside = folder.path().join("link.png");
     #[cfg(unix)]
     std::os::unix::fs::symlink("/etc/hostname", &outside).unwrap();
+    let slide =
+        |more: &str| format!("kind = \"projector\"\nposition_mm = [0, 0, 9]\ndirection = [0, 0, -1]\n{more}");
     let two_environments = "kind = \"environment\"\n[[light]]\nkind = \"environment\"";
     let many_lights = "[[light]]\nkind = \"environment\"\n".repeat(1001);
     let cases: Vec<(&str, String, &str)> = vec![
@@ -113,6 +115,10 @@ fn scene_files() {
         ),
         ("kindless", light("intensity = 1"), "key `light[0].kind`: is missing"),
         ("kind", light("kind = \"laser\""), "`laser` is not known"),
+        ("no-slide", light(&slide("")), "key `light[0].path`: is missing"),
+        ("lost-slide", light(&slide("path = \"none.png\"")), "cannot be opened"),
+        ("outside", light(&slide("path = \"../slide.png\"")), "key `light[0].path`"),
+        ("wide", light(&slide("path = \"a.png\"\nvertical_fov_degrees = 180")), "got 180"),
         ("one-light", scene("[light]\nkind = \"point\""), "written [[light]]"),
         ("nowhere", light("kind = \"point\""), "key `light[0].position_mm`: is missing"),
         ("direction", light("kind = \"directional\"\ndirection = [0, 0, 0]"), "has no direction"),

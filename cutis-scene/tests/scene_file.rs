@@ -73,18 +73,26 @@ fn light_keys_arrive() {
         "{MESH}[[light]]\nkind = \"point\"\nposition_mm = [1, 2, 3]\ncolour = [1, 0.5, 0]\nintensity = 2\n\
          radius_mm = 4\n[[light]]\nkind = \"spot\"\nposition_mm = [0, 0, 9]\ndirection = [0, 0, -5]\n\
          inner_cone_degrees = 10\nouter_cone_degrees = 20\n[[light]]\nkind = \"directional\"\n\
-         direction = [0, -2, 0]\nangular_radius_degrees = 0.5\n[[light]]\nkind = \"environment\"\nvisible = true\n\
+         direction = [0, -2, 0]\nangular_radius_degrees = 0.5\n[[light]]\nkind = \"projector\"\n\
+         path = \"map.png\"\nposition_mm = [0, 0, 9]\ndirection = [0, 0, -5]\nup = [0, -1, 0]\n\
+         vertical_fov_degrees = 90\nintensity = 3\nradius_mm = 2\n[[light]]\nkind = \"environment\"\nvisible = true\n\
          rotation_degrees = 180\nintensity = 0.5\n"
     );
     let scene = scene_in(folder.path(), &text);
-    let point = Light::Point {
-        position_mm: Vec3::new(1.0, 2.0, 3.0),
-        intensity_w_per_sr: Vec3::new(2.0, 1.0, 0.0),
-        radius_mm: 4.0,
+    let Light::Point { position_mm, intensity_w_per_sr, radius_mm } = scene.lights[0] else {
+        panic!("{:?}", scene.lights[0])
     };
-    assert_eq!(scene.lights[0], point);
+    assert_eq!((position_mm, radius_mm), (Vec3::new(1.0, 2.0, 3.0), 4.0));
+    assert_eq!(intensity_w_per_sr, Vec3::new(2.0, 1.0, 0.0));
     assert!(matches!(scene.lights[1], Light::Spot { dir_travel, .. } if dir_travel == -Vec3::Z));
     assert!(matches!(scene.lights[2], Light::Directional { dir_to_light, .. } if dir_to_light == Vec3::Y));
+    let Light::Projector(projector) = &scene.lights[3] else { panic!("{:?}", scene.lights[3]) };
+    assert_eq!(projector.axes, [-Vec3::X, -Vec3::Y, -Vec3::Z]);
+    assert!((projector.tan_half_height - 1.0).abs() < 1e-6 && projector.image.width() > 0);
+    assert_eq!(
+        (projector.position_mm.z, projector.intensity_w_per_sr.x, projector.radius_mm),
+        (9.0, 3.0, 2.0)
+    );
     let environment = scene.environment.unwrap();
     assert!(environment.visible && (environment.rotation_rad - std::f32::consts::PI).abs() < 1e-6);
     assert_eq!(environment.radiance_scale, Vec3::splat(0.5));

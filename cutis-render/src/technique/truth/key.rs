@@ -1,7 +1,7 @@
 //! A number that tells renderings apart whose samples must not be mixed.
 
 use crate::settings::Settings;
-use cutis_scene::{Material, Scene, Texture};
+use cutis_scene::{Light, Material, Scene, Texture};
 use glam::{Vec2, Vec3};
 use std::hash::{DefaultHasher, Hash, Hasher};
 
@@ -14,6 +14,11 @@ pub fn of(scene: &Scene, settings: &Settings) -> u64 {
     (settings.width, settings.height, settings.seed).hash(&mut hasher);
     let Scene { lights, camera, background, environment, .. } = scene;
     format!("{lights:?} {camera:?} {background:?}").hash(&mut hasher);
+    for light in lights {
+        if let Light::Projector(projector) = light {
+            hash_texture(&projector.image, &mut hasher);
+        }
+    }
     if let Some(environment) = environment {
         format!("{} {:?}", environment.rotation_rad, environment.radiance_scale).hash(&mut hasher);
         hash_texture(&environment.map, &mut hasher);

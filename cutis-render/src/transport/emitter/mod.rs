@@ -6,7 +6,7 @@
 mod environment_table;
 
 use super::random::Random;
-use cutis_scene::{Light, Scene};
+use cutis_scene::{Light, Projector, Scene};
 use environment_table::EnvironmentTable;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -149,7 +149,9 @@ fn cone(light: &Light, point_mm: DVec3) -> (f64, DVec3, f64, DVec3) {
             f64::INFINITY,
             irradiance,
         ),
-        Light::Point { position_mm, radius_mm, .. } | Light::Spot { position_mm, radius_mm, .. } => {
+        Light::Point { position_mm, radius_mm, .. }
+        | Light::Spot { position_mm, radius_mm, .. }
+        | Light::Projector(Projector { position_mm, radius_mm, .. }) => {
             let to_light = position_mm.as_dvec3() - point_mm;
             let distance_mm = to_light.length().max(f64::MIN_POSITIVE);
             // From inside of the light there is no cone; a hair outside is as good.

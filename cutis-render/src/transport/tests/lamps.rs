@@ -6,14 +6,18 @@ use crate::transport::exitance::{Entrances, of_place};
 use crate::transport::path::Transport;
 use crate::transport::random::Random;
 use cutis_optics::simulate::{Grid, Layer, LayeredSlab, Rings, Simulation};
-use cutis_scene::{Light, Scene};
+use cutis_scene::{Light, Projector, Scene, Texels, Texture};
 use glam::{DVec3, Vec3};
 use std::f32::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// Place of the lamp, mm; the ball is in the middle.
+const TO_LAMP_MM: Vec3 = Vec3::new(40.0, 60.0, 70.0);
 
 /// A ball in the light of a lamp as large as it, from aside.
 fn lamp_and_ball(rings: u32, roughness: f32) -> Scene {
     let lamp = Light::Point {
-        position_mm: Vec3::new(40.0, 60.0, 70.0),
+        position_mm: TO_LAMP_MM,
         intensity_w_per_sr: Vec3::new(0.03, 0.02, 0.01),
         radius_mm: 8.0,
     };
@@ -47,37 +51,55 @@ fn lamps_asked_through_the_surface_shine_as_lamps_met_by_chance() {
     assert!(asked.standard_error().x < met.standard_error().x, "{asked:?} {met:?}");
 }
 
+/// What packets of the lamps and paths of the eye find in both halves of the ball, towards the lamp and away from it.
+fn assert_lamp_as_eye(what: &str, scene: &Scene, paths: u64) {
+    let transport = Transport::new(scene, 1).unwrap();
+    let entrances = Entrances::new(&transport);
+    let half = |place: DVec3| usize::from(place.dot(TO_LAMP_MM.as_dvec3()) < 0.0);
+    let (mut from_lamp, packets) = ([Estimate::default(); 2], 60_000);
+    let area_mm2 = entrances.area_mm2() / 2.0;
+    for number in 0..packets {
+        let mut flux = [DVec3::ZERO; 2];
+        entrances.walk(3, number, 1, |exit| {
+            let (theta, phi) = (exit.uv.y * PI, exit.uv.x * TAU);
+            let dir = Vec3::new(theta.sin() * phi.cos(), theta.cos(), theta.sin() * phi.sin());
+            flux[half(dir.as_dvec3())] += exit.flux / area_mm2;
+        });
+        (0..2).for_each(|h| from_lamp[h].add(flux[h]));
+    }
+    let mut from_places = [Estimate::default(); 2];
+    let mut random = Random::new(8, 0, 0);
+    for number in 0..paths {
+        let (meeting, place) = entrances.place(&mut random);
+        let came = of_place(&transport, meeting, place, &mut Random::new(9, number, 0));
+        let h = half(place);
+        from_places[h].add(came);
+    }
+    for h in 0..2 {
+        assert_alike(&format!("{what}, half {h}"), &from_lamp[h], &from_places[h]);
+    }
+}
+
 #[test]
 fn light_from_lamps_leaves_as_the_eye_sees_it() {
-    for roughness in [0.3, 0.0] {
-        let scene = lamp_and_ball(16, roughness);
-        let transport = Transport::new(&scene, 1).unwrap();
-        let entrances = Entrances::new(&transport);
-        // In both halves of the ball, towards the lamp and away from it.
-        let half = |place: DVec3| usize::from(place.dot(DVec3::new(40.0, 60.0, 70.0)) < 0.0);
-        let (mut from_lamp, packets) = ([Estimate::default(); 2], 60_000);
-        let area_mm2 = entrances.area_mm2() / 2.0;
-        for number in 0..packets {
-            let mut flux = [DVec3::ZERO; 2];
-            entrances.walk(3, number, 1, |exit| {
-                let (theta, phi) = (exit.uv.y * PI, exit.uv.x * TAU);
-                let dir = Vec3::new(theta.sin() * phi.cos(), theta.cos(), theta.sin() * phi.sin());
-                flux[half(dir.as_dvec3())] += exit.flux / area_mm2;
-            });
-            (0..2).for_each(|h| from_lamp[h].add(flux[h]));
-        }
-        let mut from_places = [Estimate::default(); 2];
-        let mut random = Random::new(8, 0, 0);
-        for number in 0..if roughness > 0.0 { 30_000 } else { 400_000 } {
-            let (meeting, place) = entrances.place(&mut random);
-            let came = of_place(&transport, meeting, place, &mut Random::new(9, number, 0));
-            let h = half(place);
-            from_places[h].add(came);
-        }
-        for h in 0..2 {
-            assert_alike(&format!("roughness {roughness}, half {h}"), &from_lamp[h], &from_places[h]);
-        }
-    }
+    assert_lamp_as_eye("rough", &lamp_and_ball(16, 0.3), 30_000);
+    assert_lamp_as_eye("smooth", &lamp_and_ball(16, 0.0), 400_000);
+}
+
+#[test]
+fn light_from_a_projector_leaves_as_the_eye_sees_it() {
+    let mut scene = lamp_and_ball(16, 0.3);
+    // Half white, half red, and narrower than the ball.
+    let image = Texture::new(2, 1, Texels::LinearF32(vec![[1.0; 4], [1.0, 0.2, 0.0, 1.0]]));
+    scene.lights = vec![Light::Projector(Projector {
+        position_mm: TO_LAMP_MM,
+        axes: Projector::axes(-TO_LAMP_MM.normalize(), Vec3::Y),
+        tan_half_height: 0.04,
+        image: Arc::new(image),
+        intensity_w_per_sr: Vec3::new(0.03, 0.02, 0.01),
+        radius_mm: 8.0,
+    })];
+    assert_lamp_as_eye("projector", &scene, 30_000);
 }
 
 /// A film on the surface is passed once in and once out, however often light is thrown back within: with `albedo_mix` 0.5 the

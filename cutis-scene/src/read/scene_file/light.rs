@@ -1,11 +1,12 @@
-//! `[[light]]`: directional, point and spot lights, and the environment.
+//! `[[light]]`: directional, point and spot lights, projectors, and the environment.
 
 use super::Context;
 use super::keys::Keys;
 use crate::read::image::ColourSpace;
 use crate::studio::studio_environment;
-use crate::{Environment, Light, SceneError};
+use crate::{Environment, Light, Projector, SceneError, Texture};
 use glam::Vec3;
+use std::sync::Arc;
 
 /// Most lights of a scene.
 const MAX_LIGHTS: usize = 1000;
@@ -34,12 +35,15 @@ pub(super) fn read_all(root: &Keys, context: &mut Context) -> Result<Lights, Sce
             "directional" => all.lights.push(directional(keys)?),
             "point" => all.lights.push(point(keys)?),
             "spot" => all.lights.push(spot(keys)?),
+            "projector" => all.lights.push(projector(keys, context)?),
             "environment" if all.environment.is_some() => {
                 return Err(keys.error("kind", "is a second environment; a scene has one"));
             }
             "environment" => all.environment = Some(environment(keys, context)?),
             other => {
-                let reason = format!("`{other}` is not known; directional, point, spot and environment are");
+                let reason = format!(
+                    "`{other}` is not known; directional, point, spot, projector and environment are"
+                );
                 return Err(keys.error("kind", reason));
             }
         }
@@ -111,16 +115,46 @@ fn spot(keys: &Keys) -> Result<Light, SceneError> {
     })
 }
 
+/// The image at `path`.
+fn image(keys: &Keys, context: &mut Context) -> Result<Arc<Texture>, SceneError> {
+    let text = keys.required("path", keys.string("path")?)?;
+    let path = context.folder.resolve(text).map_err(|reason| keys.error("path", reason))?;
+    context.textures.file(&path, ColourSpace::Colour, &mut context.warnings)
+}
+
+/// `direction` is the way the light travels along its axis; `intensity` in W/sr where the image is white.
+fn projector(keys: &Keys, context: &mut Context) -> Result<Light, SceneError> {
+    keys.only(&[
+        "kind",
+        "path",
+        "position_mm",
+        "direction",
+        "up",
+        "vertical_fov_degrees",
+        "colour",
+        "intensity",
+        "radius_mm",
+    ])?;
+    let dir_travel = keys.required("direction", keys.direction("direction")?)?;
+    let up = keys.direction("up")?.unwrap_or(Vec3::Y);
+    let angle = keys.number_in("vertical_fov_degrees", 0.1..=170.0)?.unwrap_or(30.0);
+    Ok(Light::Projector(Projector {
+        position_mm: position(keys)?,
+        axes: Projector::axes(dir_travel, up),
+        tan_half_height: (0.5 * angle.to_radians()).tan(),
+        image: image(keys, context)?,
+        intensity_w_per_sr: strength(keys)?,
+        radius_mm: radius(keys)?,
+    }))
+}
+
 /// A latitude-longitude image, or the studio where no `path` is given. Colour times intensity scales its radiance.
 fn environment(keys: &Keys, context: &mut Context) -> Result<Environment, SceneError> {
     keys.only(&["kind", "path", "rotation_degrees", "colour", "intensity", "visible"])?;
     let rotation = keys.number_in("rotation_degrees", -360.0..=360.0)?.unwrap_or(0.0);
-    let map = match keys.string("path")? {
-        None => studio_environment().map,
-        Some(text) => {
-            let path = context.folder.resolve(text).map_err(|reason| keys.error("path", reason))?;
-            context.textures.file(&path, ColourSpace::Colour, &mut context.warnings)?
-        }
+    let map = match keys.has("path") {
+        false => studio_environment().map,
+        true => image(keys, context)?,
     };
     Ok(Environment {
         map,

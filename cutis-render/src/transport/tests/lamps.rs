@@ -102,6 +102,16 @@ fn light_from_a_projector_leaves_as_the_eye_sees_it() {
     assert_lamp_as_eye("projector", &scene, 30_000);
 }
 
+/// The flux of packets is corrected where the normal is not that of the triangle: here all normals lean towards the lamp.
+#[test]
+fn light_leaves_a_relief_as_the_eye_sees_it() {
+    let mut scene = lamp_and_ball(16, 0.5);
+    for normal in &mut scene.objects[0].mesh.normals {
+        *normal = (*normal + 0.4 * TO_LAMP_MM.normalize()).normalize();
+    }
+    assert_lamp_as_eye("relief", &scene, 60_000);
+}
+
 /// A film on the surface is passed once in and once out, however often light is thrown back within: with `albedo_mix` 0.5 the
 /// bare ball's light times the albedo, over the colour that the bare tissue has on its own; seen by the eye, and leaving.
 #[test]

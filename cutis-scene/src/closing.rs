@@ -65,7 +65,7 @@ struct Border {
 impl Border {
     fn of(mesh: &Mesh) -> Result<Self, OpenMesh> {
         let point_of_vertex = weld(&mesh.positions_mm);
-        let (mut next, mut vertex_of_point, mut twisted) = (Vec::new(), HashMap::new(), 0);
+        let (mut next, mut twisted) = (Vec::new(), 0);
         for ([a, b], uses) in edges(mesh, &point_of_vertex) {
             if a == b {
                 continue; // an edge without length
@@ -74,7 +74,6 @@ impl Border {
             for &(triangle, corner) in &uses {
                 let vertex = mesh.triangles[triangle as usize][usize::from(corner)];
                 let from = point_of_vertex[vertex as usize];
-                vertex_of_point.entry(from).or_insert(vertex);
                 balance += if from == a { 1 } else { -1 };
             }
             match balance {
@@ -89,6 +88,8 @@ impl Border {
             return Err(OpenMesh::Twisted { edges: twisted });
         }
         next.sort_unstable();
+        // In the order of the triangles: which of several vertices at a point a cap takes its texture from is not left to chance.
+        let mut vertex_of_point = HashMap::new();
         for (triangle, corner) in (0..mesh.triangles.len()).flat_map(|t| (0..3).map(move |c| (t, c))) {
             let vertex = mesh.triangles[triangle][corner];
             vertex_of_point.entry(point_of_vertex[vertex as usize]).or_insert(vertex);

@@ -10,8 +10,10 @@ use cutis_scene::solids::{Meeting, Solids};
 use cutis_scene::{Material, Object, SurfacePoint};
 use glam::{DMat3, DVec3, Vec3};
 
-/// Packets per channel that tell the colour of a tissue: its standard error is below half a percent of one.
-const COLOUR_PACKETS: u64 = 65_536;
+/// Packets per channel that tell the colour of a tissue, at first and at most, and the part of it that its standard error may
+/// be. It is the same for all pixels, so that no standard error of a picture knows it.
+const COLOUR_PACKETS: [u64; 2] = [1 << 16, 1 << 21];
+const COLOUR_ERROR: f64 = 0.003;
 /// Root-mean-square slope from which on refracted light spreads far enough to be aimed at.
 const ROUGH_ENOUGH: f32 = 0.08;
 
@@ -148,8 +150,15 @@ fn diffuse_reflectance(tissue: &Tissue, seed: u64) -> DVec3 {
         let slab = LayeredSlab::in_air(layers.collect()).ok()?;
         let grid =
             Grid { rings: Rings::even(1.0, 1).ok()?, depth_step_mm: 1.0, depth_bins: 1, cosine_bins: 1 };
-        let estimates = Simulation { slab, grid, seed }.run(COLOUR_PACKETS);
-        Some(estimates.diffuse_reflectance().value)
+        let simulation = Simulation { slab, grid, seed };
+        let mut packets = COLOUR_PACKETS[0];
+        loop {
+            let colour = simulation.run(packets).diffuse_reflectance();
+            if colour.standard_error <= COLOUR_ERROR * colour.value || packets >= COLOUR_PACKETS[1] {
+                return Some(colour.value);
+            }
+            packets *= 4;
+        }
     };
     // A tissue that cannot be simulated so was checked before; white changes nothing.
     DVec3::from_array([0, 1, 2].map(|channel| of_channel(channel).unwrap_or(1.0))).max(DVec3::splat(1e-6))

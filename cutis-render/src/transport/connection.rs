@@ -84,30 +84,37 @@ impl Transport<'_> {
         }
         let at_mm = scattering.point_mm;
         let mut same = random.clone();
-        let Some(draw) = self.emitters.draw(self.emitters.lamps(), at_mm, random) else { return DVec3::ZERO };
+        // None where no lamp shines here; where the light comes in, one may.
+        let draw = self.emitters.draw(self.emitters.lamps(), at_mm, random);
         let out = |dir| {
             let ray = Ray64 { origin_mm: at_mm, dir, from: NOWHERE };
             self.solids.way_out(&ray, reach_mm, &mut scattering.within.clone())
         };
-        let guess = Guess::new(last, &draw, at_mm).or_else(|| {
-            let met = out(draw.dir)?;
-            let surface = self.bodies[met.object as usize].surface(&self.solids, &met, draw.dir);
-            Some(Guess { normal: surface.normal, interface: surface.interface, way_mm: met.distance_mm })
+        let guess = draw.and_then(|draw| {
+            let guess = Guess::new(last, &draw, at_mm).or_else(|| {
+                let met = out(draw.dir)?;
+                let surface = self.bodies[met.object as usize].surface(&self.solids, &met, draw.dir);
+                let roughness = surface.interface.roughness.max(BENT);
+                let interface = Interface { roughness, ..surface.interface };
+                Some(Guess { normal: surface.normal, interface, way_mm: met.distance_mm })
+            });
+            Some((guess?, draw.dir))
         });
         // The deeper, the less comes through, and the less often it is asked for.
         let sigma_t = walk.tissue.core().sigma_t_per_mm().min_element();
-        let likely = guess.as_ref().map_or(0.0, |guess| (-sigma_t * guess.way_mm).exp()).max(ASK_AT_LEAST);
+        let likely =
+            guess.as_ref().map_or(0.0, |(guess, _)| (-sigma_t * guess.way_mm).exp()).max(ASK_AT_LEAST);
         if random.unit() >= likely {
             return DVec3::ZERO;
         }
         let towards = match &guess {
-            Some(guess) => guess.draw(draw.dir, random),
+            Some((guess, light)) => guess.draw(*light, random),
             None => Some(random.direction()),
         };
         let Some(towards) = towards else { return DVec3::ZERO };
         let Some(meeting) = out(towards) else { return DVec3::ZERO };
         let evenly = 1.0 / (4.0 * PI);
-        let density = guess.map_or(evenly, |guess| guess.density_per_sr(draw.dir, towards));
+        let density = guess.map_or(evenly, |(guess, light)| guess.density_per_sr(light, towards));
         let surface = self.bodies[meeting.object as usize].surface(&self.solids, &meeting, -towards);
         let origin_mm = surface.point.lifted_position_mm.as_dvec3();
         // The same part of the lamp, as seen from where its light comes in.

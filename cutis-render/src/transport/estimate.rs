@@ -19,6 +19,11 @@ impl Estimate {
         self.count += 1.0;
     }
 
+    /// Number of samples.
+    pub fn count(&self) -> u64 {
+        self.count as u64
+    }
+
     /// Mean of the samples; 0 without any.
     pub fn mean(&self) -> DVec3 {
         self.sum / self.count.max(1.0)

@@ -7,7 +7,7 @@
 //! From a texel the same number comes of paths: [`of_place`].
 
 use super::body::Surface;
-use super::path::Transport;
+use super::path::{INSIDE_MAX, OUTSIDE_MAX, Transport};
 use super::random::Random;
 use super::walk::{Carried, Met, Walk};
 use cutis_scene::solids::{Meeting, Ray64};
@@ -18,10 +18,8 @@ use std::ops::Range;
 
 /// Packets walked as one: each batch is added up in its own order.
 const BATCH: u64 = 512;
-/// Times that light may leave one body and meet another surface.
-const OUTSIDE_MAX: u32 = 256;
-/// Times that light may be thrown back by a surface from within.
-const INSIDE_MAX: u32 = 1_000_000;
+/// Cosine below which light runs along a triangle.
+const GRAZING: f64 = 1e-9;
 
 /// Where and with how much flux a packet left, W (per W/m² of irradiance: mm²).
 #[derive(Debug, Clone, Copy)]
@@ -103,17 +101,23 @@ impl<'a, 'b> Entrances<'a, 'b> {
     fn packet(&self, random: &mut Random, exits: &mut Vec<Exit>) {
         let Transport { solids, emitters, bodies, .. } = self.transport;
         let (meeting, place_mm) = self.place(random);
-        let Some(draw) = emitters.draw(emitters.all(), place_mm, random) else { return };
+        // As the eye asks for it: from where the smooth surface is.
+        let origin_mm = solids.surface(&meeting).lifted_position_mm.as_dvec3();
+        let Some(draw) = emitters.draw(emitters.all(), origin_mm, random) else { return };
         let mut surface = bodies[meeting.object as usize].surface(solids, &meeting, draw.dir);
         // As for paths: light counts that the smooth surface faces, be the triangle turned away by a hair.
         surface.normal = surface.relief;
         let cos = draw.dir.dot(surface.normal);
-        let origin_mm = surface.point.lifted_position_mm.as_dvec3();
         let shadow = Ray64 { origin_mm, dir: draw.dir, from: meeting.id };
         if cos <= 0.0 || solids.occluded(&shadow, draw.distance_mm) {
             return;
         }
-        let irradiance = draw.light * draw.dir.dot(surface.flat_normal).abs();
+        // Along the triangle itself nothing falls on it, whatever the smooth surface says.
+        let slant = draw.dir.dot(surface.flat_normal).abs();
+        if slant < GRAZING {
+            return;
+        }
+        let irradiance = draw.light * slant;
         let mut packet = Packet {
             transport: self.transport,
             flux: irradiance * self.area_mm2(),

@@ -15,9 +15,9 @@ use glam::DVec3;
 use std::ops::Range;
 
 /// Times that light may leave one body and meet another surface.
-const OUTSIDE_MAX: u32 = 256;
+pub(super) const OUTSIDE_MAX: u32 = 256;
 /// Times that light may be thrown back by a surface from within.
-const INSIDE_MAX: u32 = 1_000_000;
+pub(super) const INSIDE_MAX: u32 = 1_000_000;
 
 /// Everything that paths need to know.
 pub struct Transport<'a> {
@@ -192,7 +192,8 @@ impl Path<'_, '_> {
             // Where bodies overlap, light may leave through the other one's skin.
             let mut surface = transport.bodies[meeting.object as usize].surface(solids, &meeting, from);
             // Lamps that were asked for where the light was scattered last are not asked again.
-            let asked = flown_mm.is_some_and(|flown_mm| flown_mm <= body.connection_mm);
+            let asked = flown_mm.is_some_and(|flown_mm| flown_mm <= body.connection_mm)
+                && !surface.interface.is_sharp();
             self.lights = if asked { transport.emitters.surroundings() } else { transport.emitters.all() };
             self.ask_light(&surface, &meeting, from, surface.film_outwards);
             let to = surface.sample(from, self.random);

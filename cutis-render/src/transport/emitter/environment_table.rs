@@ -30,7 +30,7 @@ impl<'a> EnvironmentTable<'a> {
         let rows = (height * columns / width).max(1);
         let cell = |i: usize| {
             let (x, y) = (i % columns, i / columns);
-            let mut brightest = 0.0f64;
+            let mut sum = 0.0f64;
             // At corners, sides and middle: what lies between is interpolated from texels at least so close.
             let steps = (width / columns).max(1) + 1;
             for (a, b) in (0..=steps).flat_map(|a| (0..=steps).map(move |b| (a, b))) {
@@ -39,9 +39,9 @@ impl<'a> EnvironmentTable<'a> {
                 };
                 let uv = Vec2::new(place(x, a, columns), place(y, b, rows));
                 let radiance = environment.radiance(environment.dir(uv));
-                brightest += f64::from(radiance.element_sum()) / 3.0;
+                sum += f64::from(radiance.element_sum()) / 3.0;
             }
-            brightest / ((steps + 1) * (steps + 1)) as f64
+            sum / ((steps + 1) * (steps + 1)) as f64
         };
         let mut weights: Vec<f64> = (0..columns * rows).map(cell).collect();
         for (i, weight) in weights.iter_mut().enumerate() {

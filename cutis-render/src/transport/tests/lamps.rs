@@ -52,11 +52,11 @@ fn lamps_asked_through_the_surface_shine_as_lamps_met_by_chance() {
 }
 
 /// What packets of the lamps and paths of the eye find in both halves of the ball, towards the lamp and away from it.
-fn assert_lamp_as_eye(what: &str, scene: &Scene, paths: u64) {
+fn assert_lamp_as_eye(what: &str, scene: &Scene, packets: u64, paths: u64) {
     let transport = Transport::new(scene, 1).unwrap();
     let entrances = Entrances::new(&transport);
     let half = |place: DVec3| usize::from(place.dot(TO_LAMP_MM.as_dvec3()) < 0.0);
-    let (mut from_lamp, packets) = ([Estimate::default(); 2], 60_000);
+    let mut from_lamp = [Estimate::default(); 2];
     let area_mm2 = entrances.area_mm2() / 2.0;
     for number in 0..packets {
         let mut flux = [DVec3::ZERO; 2];
@@ -82,8 +82,8 @@ fn assert_lamp_as_eye(what: &str, scene: &Scene, paths: u64) {
 
 #[test]
 fn light_from_lamps_leaves_as_the_eye_sees_it() {
-    assert_lamp_as_eye("rough", &lamp_and_ball(16, 0.3), 30_000);
-    assert_lamp_as_eye("smooth", &lamp_and_ball(16, 0.0), 400_000);
+    assert_lamp_as_eye("rough", &lamp_and_ball(16, 0.3), 60_000, 30_000);
+    assert_lamp_as_eye("smooth", &lamp_and_ball(16, 0.0), 60_000, 400_000);
 }
 
 #[test]
@@ -99,7 +99,24 @@ fn light_from_a_projector_leaves_as_the_eye_sees_it() {
         intensity_w_per_sr: Vec3::new(0.03, 0.02, 0.01),
         radius_mm: 8.0,
     })];
-    assert_lamp_as_eye("projector", &scene, 30_000);
+    assert_lamp_as_eye("projector", &scene, 60_000, 30_000);
+}
+
+/// Light that is scattered in the dark is asked for lamps, too, where none of several shines on that place: their light may come
+/// in beside it.
+#[test]
+fn narrow_lamps_shine_as_the_eye_sees_them() {
+    let mut scene = lamp_and_ball(16, 0.3);
+    let spot = |aim_mm: Vec3| Light::Spot {
+        position_mm: TO_LAMP_MM,
+        dir_travel: (aim_mm - TO_LAMP_MM).normalize(),
+        intensity_w_per_sr: Vec3::new(0.03, 0.02, 0.01),
+        inner_cone_rad: 0.03,
+        outer_cone_rad: 0.031,
+        radius_mm: 3.0,
+    };
+    scene.lights = vec![spot(Vec3::new(4.0, 0.0, 0.0)), spot(Vec3::new(-2.0, 3.0, 0.0))];
+    assert_lamp_as_eye("spots", &scene, 600_000, 600_000);
 }
 
 /// The flux of packets is corrected where the normal is not that of the triangle: here all normals lean towards the lamp.
@@ -109,7 +126,7 @@ fn light_leaves_a_relief_as_the_eye_sees_it() {
     for normal in &mut scene.objects[0].mesh.normals {
         *normal = (*normal + 0.4 * TO_LAMP_MM.normalize()).normalize();
     }
-    assert_lamp_as_eye("relief", &scene, 60_000);
+    assert_lamp_as_eye("relief", &scene, 60_000, 60_000);
 }
 
 /// A film on the surface is passed once in and once out, however often light is thrown back within: with `albedo_mix` 0.5 the

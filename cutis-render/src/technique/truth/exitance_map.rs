@@ -20,15 +20,18 @@ const PILOT_SAMPLES: u64 = 24;
 const PARTS: f32 = 4.0;
 /// Work between two looks at the noise, in samples.
 const STEP: u64 = 4;
+/// Least weight of a corner where paths start.
+const OFF_EDGE: f64 = 1e-3;
 /// Samples before the noise is believed.
 const SAMPLES_MIN: u64 = 16;
 
 /// Where estimates begin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Start {
-    /// Packets at the lights: good where few places shine.
+    /// Packets at the lights: good where few places shine. A texel has the mean over its surface.
     Light,
-    /// Paths at the texels: good where light comes from everywhere, and for the dark side.
+    /// Paths at the texels: good where light comes from everywhere, and for the dark side. A texel has what leaves its middle, or
+    /// the place next to it that lies on the surface.
     Texel,
 }
 
@@ -113,7 +116,7 @@ impl ExitanceMap {
     }
 }
 
-/// Median of error over mean, channels summed, over what shines at all.
+/// Median of error over mean, channels summed, over what has been seen to shine: what no packet has left yet does not count.
 fn median_noise(texels: impl Iterator<Item = (DVec3, DVec3)>) -> f64 {
     let relative = |(mean, error): (DVec3, DVec3)| {
         let sum = mean.element_sum();
@@ -147,8 +150,8 @@ struct FromLights<'a, 'b> {
     seed: u64,
     /// Surface that each texel holds, mm².
     areas_mm2: Vec<f64>,
-    /// Triangles of the object itself; further ones are caps and have no texels.
-    triangles: u32,
+    /// Whether a triangle has texels: caps, whose texture is one point, have none.
+    has_texels: Vec<bool>,
     sums: Vec<DVec3>,
     squares: Vec<DVec3>,
     packets: u64,
@@ -157,14 +160,14 @@ struct FromLights<'a, 'b> {
 impl<'a, 'b> FromLights<'a, 'b> {
     fn new(transport: &'b Transport<'a>, size: usize, seed: u64) -> Self {
         let object = &transport.scene.objects[0];
-        let triangles = object.mesh.triangles.len() as u32;
+        let triangles = 0..object.mesh.triangles.len();
         let nothing = vec![DVec3::ZERO; size * size];
         Self {
             entrances: Entrances::new(transport),
             size,
             seed,
             areas_mm2: areas_mm2(object, size),
-            triangles,
+            has_texels: triangles.map(|triangle| has_texels(object, triangle)).collect(),
             sums: nothing.clone(),
             squares: nothing,
             packets: 0,
@@ -174,11 +177,11 @@ impl<'a, 'b> FromLights<'a, 'b> {
 
 impl Estimator for FromLights<'_, '_> {
     fn add(&mut self, first: u64, count: u64) -> u64 {
-        let Self { entrances, size, seed, triangles, sums, squares, .. } = self;
+        let Self { entrances, size, seed, has_texels, sums, squares, .. } = self;
         let per_sample = (*size * *size) as u64;
         self.packets += count * per_sample;
         entrances.walk(*seed, first * per_sample, count * per_sample, |exit| {
-            if exit.object == 0 && exit.triangle < *triangles {
+            if exit.object == 0 && has_texels[exit.triangle as usize] {
                 let texel = texel_of(exit.uv, *size);
                 sums[texel] += exit.flux;
                 squares[texel] += exit.flux * exit.flux;
@@ -207,7 +210,7 @@ struct FromTexels<'a, 'b> {
 impl<'a, 'b> FromTexels<'a, 'b> {
     fn new(transport: &'b Transport<'a>, atlas: &Atlas, seed: u64) -> Self {
         let place = |surface: &TexelSurface| {
-            let weights = [f64::from(surface.b1), f64::from(surface.b2)];
+            let weights = onto_triangle([f64::from(surface.b1), f64::from(surface.b2)]);
             transport.solids.place_on(0, surface.triangle, weights)
         };
         let places: Vec<_> = atlas.surface.iter().map(place).collect();
@@ -240,10 +243,23 @@ impl Estimator for FromTexels<'_, '_> {
     }
 }
 
+/// The nearest weights within the triangle, a hair away from its edges: a texel at the border of a chart may have its middle
+/// beside the surface, and a path that starts on an edge may miss the triangle beyond it.
+fn onto_triangle([b1, b2]: [f64; 2]) -> [f64; 2] {
+    let weights = [1.0 - b1 - b2, b1, b2].map(|weight| weight.max(OFF_EDGE));
+    let sum: f64 = weights.iter().sum();
+    [weights[1] / sum, weights[2] / sum]
+}
+
+fn has_texels(object: &Object, triangle: usize) -> bool {
+    let [a, b, c] = object.mesh.corner_uvs(triangle);
+    (b - a).perp_dot(c - a) != 0.0
+}
+
 /// Area of the surface in each texel, mm²: triangles are cut into parts smaller than a texel.
 fn areas_mm2(object: &Object, size: usize) -> Vec<f64> {
     let mut areas = vec![0.0; size * size];
-    for triangle in 0..object.mesh.triangles.len() {
+    for triangle in (0..object.mesh.triangles.len()).filter(|&triangle| has_texels(object, triangle)) {
         let [a, b, c] = object.mesh.corner_uvs(triangle);
         let longest = (b - a).length().max((c - b).length()).max((a - c).length());
         let parts = ((longest * size as f32 * PARTS).ceil() as usize).clamp(1, 4 * size);
@@ -271,4 +287,64 @@ fn areas_mm2(object: &Object, size: usize) -> Vec<f64> {
 fn texel_of(uv: Vec2, size: usize) -> usize {
     let place = |share: f32| ((share.rem_euclid(1.0) * size as f32) as usize).min(size - 1);
     place(uv.y) * size + place(uv.x)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+    use super::*;
+    use crate::Silent;
+    use crate::transport::tests::{ball, material, scene_of};
+    use cutis_scene::Light;
+    use glam::Vec3;
+    use std::f64::consts::PI;
+
+    const SIZE: usize = 64;
+    const RADIUS_MM: f64 = 10.0;
+    const HALF_ANGLE: f64 = 0.5;
+
+    /// A white ball of index 1 in even light from the side of +x: all that falls on it leaves it.
+    #[test]
+    fn the_light_that_fell_on_a_white_ball_is_all_on_its_map() {
+        let body = ball(RADIUS_MM as f32, 48, material(0.0, 1.0, 1.0, 0.3));
+        let light = Light::Directional {
+            dir_to_light: Vec3::X,
+            irradiance_w_per_m2: Vec3::splat(2.0),
+            // Through a surface that bends nothing, paths meet the lamp by chance: it is large.
+            angular_radius_rad: HALF_ANGLE as f32,
+        };
+        let scene = scene_of(vec![body], vec![light], None);
+        let transport = Transport::new(&scene, 1).unwrap();
+        let areas = areas_mm2(&scene.objects[0], SIZE);
+        let whole: f64 = areas.iter().sum();
+        assert!(
+            (whole / (4.0 * PI * RADIUS_MM * RADIUS_MM) - 1.0).abs() < 3e-3,
+            "the ball's surface: {whole}"
+        );
+        let settings =
+            Settings { irradiance_size: SIZE as u32, samples_per_pixel: 16, ..Settings::default() };
+        // The lamp's radiance E/(π sin²) times its solid angle 2π (1 - cos) times the ball's cross section, of which the
+        // edges of 96 facets cut off 0.1 %.
+        let expected = 2.0 * 2.0 / (1.0 + HALF_ANGLE.cos()) * PI * RADIUS_MM * RADIUS_MM;
+        // On the ball +x is at a quarter of the turn or three, so that the map has a bright and a dark half.
+        let sides = [Start::Light, Start::Texel].map(|start| {
+            let map = ExitanceMap::starting(start, &transport, &settings, &Silent);
+            let flux = |texel: usize| map.exitance_w_per_m2[texel].x * areas[texel];
+            let total: f64 = (0..SIZE * SIZE).map(flux).sum();
+            let error = (0..SIZE * SIZE).map(|t| (map.standard_error_w_per_m2[t].x * areas[t]).powi(2));
+            let error = error.sum::<f64>().sqrt();
+            // Four standard errors, and the facets and texels at the poles.
+            let off = total - expected;
+            assert!(off.abs() < 4.0 * error + 0.004 * expected, "{start:?}: {total} ± {error} of {expected}");
+            assert!(error < 0.02 * expected, "{start:?}: {error}");
+            (0..SIZE / 8)
+                .map(|b| (0..SIZE * SIZE).filter(|t| t % SIZE / 8 == b).map(flux).sum())
+                .collect::<Vec<f64>>()
+        });
+        for (block, (light, texel)) in sides[0].iter().zip(&sides[1]).enumerate() {
+            assert!((light - texel).abs() < 0.02 * expected, "columns {block}: {light} and {texel}");
+        }
+        let (dark, bright) = sides[0].iter().fold((f64::MAX, 0.0f64), |(a, b), &x| (a.min(x), b.max(x)));
+        assert!(bright > 3.0 * dark, "{dark} {bright}");
+    }
 }

@@ -9,6 +9,7 @@ use crate::transport::random::Random;
 use cutis_scene::{CameraRays, Scene};
 use glam::{DVec3, Vec2, Vec4};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Stream of random numbers that shifts the samples of a pixel.
 const STREAM: u32 = 0x77;
@@ -53,12 +54,15 @@ impl Film {
         }
     }
 
-    /// Adds so many samples to every pixel.
-    pub fn expose(&mut self, transport: &Transport, count: u64) {
-        let (first, width) = (self.samples, self.width as usize);
+    /// Adds as many samples to the pixels of some rows as they lack of `count` more than all have.
+    pub fn expose(&mut self, transport: &Transport, count: u64, rows: Range<usize>) {
+        let (wanted, width) = (self.samples + count, self.width as usize);
+        let first = rows.start * width;
         let mut pixels = std::mem::take(&mut self.pixels);
-        pixels.par_iter_mut().with_min_len(16).enumerate().for_each(|(i, pixel)| {
-            for sample in first..first + count {
+        let some = pixels[first..rows.end * width].par_iter_mut().with_min_len(16).enumerate();
+        some.for_each(|(i, pixel)| {
+            let i = first + i;
+            for sample in pixel.all.count()..wanted {
                 let mut random = Random::new(self.seed, i as u64, sample);
                 let dir = self.dir((i % width) as u32, (i / width) as u32, sample);
                 let came = transport.radiance(self.eye_mm, dir, &mut random);
@@ -70,6 +74,10 @@ impl Film {
             }
         });
         self.pixels = pixels;
+    }
+
+    /// All rows have `count` samples more.
+    pub fn finish(&mut self, count: u64) {
         self.samples += count;
     }
 
@@ -93,7 +101,7 @@ impl Film {
         if mean > 0.0 { (squares / count).sqrt() / (mean / count) } else { 0.0 }
     }
 
-    /// Samples of every pixel.
+    /// Samples that every pixel has; some rows may have more.
     pub fn samples(&self) -> u64 {
         self.samples
     }
@@ -144,5 +152,32 @@ impl Film {
             layers: settings.aovs.iter().map(layer).collect(),
             ..Frame::default()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+    use super::*;
+    use crate::transport::tests::{ball, even_environment, material, scene_of};
+
+    #[test]
+    fn a_state_kept_between_rows_goes_on_as_if_nothing_had_happened() {
+        let scene =
+            scene_of(vec![ball(10.0, 8, material(0.1, 1.0, 1.4, 0.3))], vec![], Some(even_environment()));
+        let transport = Transport::new(&scene, 1).unwrap();
+        let settings = Settings { width: 12, height: 10, ..Settings::default() };
+        let mut at_once = Film::new(&scene, &settings);
+        at_once.expose(&transport, 4, 0..10);
+        let mut broken_off = Film::new(&scene, &settings);
+        broken_off.expose(&transport, 4, 0..6);
+        assert_ne!(at_once.state(), broken_off.state());
+        let mut resumed = Film::new(&scene, &settings);
+        resumed.restore(broken_off.samples(), broken_off.state());
+        resumed.expose(&transport, 3, 0..10);
+        resumed.finish(3);
+        // The first rows have four already.
+        resumed.expose(&transport, 1, 0..10);
+        assert_eq!(at_once.state(), resumed.state());
     }
 }

@@ -1,8 +1,8 @@
 //! A number that tells renderings apart whose samples must not be mixed.
 
 use crate::settings::Settings;
-use cutis_scene::{Light, Material, Scene, Texture};
-use glam::{Vec2, Vec3};
+use cutis_scene::{Environment, Light, Material, Mesh, Scene, Texture};
+use glam::Vec2;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// Places along a side of a texture that are looked at: an edit that misses all of them is a dot.
@@ -20,15 +20,18 @@ pub fn of(scene: &Scene, settings: &Settings) -> u64 {
         }
     }
     if let Some(environment) = environment {
-        format!("{} {:?}", environment.rotation_rad, environment.radiance_scale).hash(&mut hasher);
+        let Environment { rotation_rad, radiance_scale, visible, .. } = environment;
+        format!("{rotation_rad} {radiance_scale:?} {visible}").hash(&mut hasher);
         hash_texture(&environment.map, &mut hasher);
     }
     for object in &scene.objects {
         object.name.hash(&mut hasher);
         hash_material(&object.material, &mut hasher);
         object.mesh.triangles.hash(&mut hasher);
-        let bits = |v: &Vec3| v.to_array().map(f32::to_bits);
-        object.mesh.positions_mm.iter().chain(&object.mesh.normals).for_each(|v| bits(v).hash(&mut hasher));
+        let Mesh { positions_mm, normals, tangents, uvs, .. } = &object.mesh;
+        positions_mm.iter().chain(normals).for_each(|v| v.to_array().map(f32::to_bits).hash(&mut hasher));
+        tangents.iter().for_each(|v| v.to_array().map(f32::to_bits).hash(&mut hasher));
+        uvs.iter().for_each(|v| v.to_array().map(f32::to_bits).hash(&mut hasher));
     }
     hasher.finish()
 }

@@ -12,14 +12,14 @@ use crate::frame::{Frame, PassTime};
 use crate::settings::{Aov, AovSpace, Settings};
 use crate::transport::path::Transport;
 use crate::{Progress, RenderError};
-use cutis_scene::Scene;
 use cutis_scene::closing::{check_closed, close_holes};
+use cutis_scene::{ScalarMap, Scene};
 pub use exitance_map::{ExitanceMap, Start};
 use film::Film;
 use std::time::{Duration, Instant};
 
-/// Pixels times samples of a pass: about a second.
-const PASS: u64 = 1 << 20;
+/// Pixels times samples of a step, after which the state may be kept: some seconds.
+const STEP: u64 = 1 << 18;
 /// Noise is only believed after so many samples per pixel.
 const SAMPLES_MIN: u64 = 16;
 /// Time between two states kept.
@@ -67,22 +67,27 @@ fn expose(transport: &Transport, settings: &Settings, progress: &dyn Progress) -
     {
         film.restore(samples, &state);
     }
-    let step = (PASS / (u64::from(settings.width) * u64::from(settings.height))).clamp(1, 16);
+    let (width, height) = (u64::from(settings.width), u64::from(settings.height));
+    let pass = (STEP / (width * height)).clamp(1, 16);
+    let rows = (STEP / width).clamp(1, height) as usize;
     let mut last_kept = Instant::now();
     progress.begin("paths", wanted);
     progress.advance(film.samples().min(wanted));
     while film.samples() < wanted {
-        let count = step.min(wanted - film.samples());
-        film.expose(transport, count);
+        let count = pass.min(wanted - film.samples());
+        for row in (0..height as usize).step_by(rows) {
+            film.expose(transport, count, row..(row + rows).min(height as usize));
+            if last_kept.elapsed() > KEEP_EVERY {
+                keep(settings.checkpoint.as_ref(), key, &film)?;
+                last_kept = Instant::now();
+            }
+        }
+        film.finish(count);
         progress.advance(count);
         let noise = film.noise();
         progress.note(&format!("paths, noise {:.2} %", 100.0 * noise));
         if film.samples() >= SAMPLES_MIN && settings.target_error.is_some_and(|target| noise <= target) {
             break;
-        }
-        if last_kept.elapsed() > KEEP_EVERY {
-            keep(settings.checkpoint.as_ref(), key, &film)?;
-            last_kept = Instant::now();
         }
     }
     keep(settings.checkpoint.as_ref(), key, &film)?;
@@ -142,8 +147,7 @@ fn check_lights(transport: &Transport) -> Result<(), RenderError> {
         return Ok(());
     }
     let sharp = |material: &cutis_scene::Material| {
-        let smooth = material.roughness.texture.is_none() && material.roughness.offset <= 0.0;
-        smooth
+        least(&material.roughness) <= 0.0
             || crate::transport::tissue::Tissue::of_material(material)
                 .is_ok_and(|t| t.refractive_index == 1.0)
     };
@@ -156,6 +160,14 @@ fn check_lights(transport: &Transport) -> Result<(), RenderError> {
         }),
         None => Ok(()),
     }
+}
+
+/// The least value of a map.
+fn least(map: &ScalarMap) -> f32 {
+    let Some((texture, channel)) = &map.texture else { return map.offset };
+    let texels = (0..texture.height()).flat_map(|y| (0..texture.width()).map(move |x| (x, y)));
+    let values = texels.map(|(x, y)| map.offset + map.gain * texture.texel(x, y)[*channel]);
+    values.fold(f32::INFINITY, f32::min)
 }
 
 #[cfg(test)]

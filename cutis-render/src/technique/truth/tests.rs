@@ -77,8 +77,11 @@ fn a_checkpoint_of_something_else_is_refused() {
     let texture = Arc::new(Texture::new(2, 2, texels));
     reliefed.objects[0].material.normal =
         Some(NormalMap { texture, space: NormalSpace::Tangent, strength: 1.0 });
+    let mut flipped = scene.clone();
+    flipped.objects[0].mesh.uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
     let others = [
         ("relief", reliefed, settings.clone()),
+        ("mapping", flipped, settings.clone()),
         ("seed", scene.clone(), Settings { seed: 6, ..settings.clone() }),
         ("size", scene.clone(), Settings { width: 12, height: 16, ..settings.clone() }),
         ("light", ball_in_light(0.4, 9.0), settings.clone()),

@@ -15,7 +15,7 @@ pub struct ValidateArgs {
     /// Render the truth anew, and take what is then measured for the bounds
     #[arg(long)]
     pub update: bool,
-    /// Samples per pixel of that truth [16 to 1048576, default: 512]
+    /// Samples per pixel of that truth [16 to 1048576, default: 1024]
     #[arg(long, value_name = "N", requires = "update")]
     pub samples: Option<u32>,
     /// Folder for pictures to look at: the diffuse part of the truth and of each technique, and maps of the errors

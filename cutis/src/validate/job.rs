@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// Width and height of the pictures: a stored file stays below 150 kB.
 pub const SIZE: u32 = 96;
 /// Paths per pixel of the truth, if nothing else is asked: one to three minutes per scene on two processors.
-const TRUTH_SAMPLES: u32 = 512;
+const TRUTH_SAMPLES: u32 = 1024;
 /// From so many on truth believes its own noise.
 const TRUTH_SAMPLES_MIN: u32 = 16;
 /// Seed of every random choice.

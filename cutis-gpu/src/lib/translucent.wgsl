@@ -1,0 +1,50 @@
+// The light-facing surface behind a point, from a light's translucent shadow map.
+
+struct LightFacing {
+    found: bool,
+    uv: vec2f,
+    chart: u32,
+    /// Distance m through the body towards the light, mm.
+    distance_mm: f32,
+    /// What of it is along the ray for a millimetre of the map's depth.
+    ray_mm_per_depth_mm: f32,
+}
+
+/// The surface nearest to the light on the way to `point_mm`, if it belongs to the object.
+fn light_facing_surface(
+    light: Light,
+    depths: texture_2d_array<f32>,
+    surfaces: texture_2d_array<u32>,
+    point_mm: vec3f,
+    object: u32,
+) -> LightFacing {
+    var there = LightFacing(false, vec2f(0.0), 0u, 0.0, 1.0);
+    if light.map_layer == NO_MAP {
+        return there;
+    }
+    let axes_mm = in_map_axes(light, point_mm);
+    let size = vec2f(textureDimensions(depths));
+    let texel = vec2i(floor(map_uv(light, axes_mm) * size));
+    if any(texel < vec2i(0)) || any(texel >= vec2i(size)) {
+        return there;
+    }
+    let depth_mm = textureLoad(depths, texel, light.map_layer, 0).x;
+    let surface = textureLoad(surfaces, texel, light.map_layer, 0).xy;
+    if depth_mm >= light.map_far_mm || (surface.y >> 16u) != object {
+        return there;
+    }
+    if light.kind != DIRECTIONAL {
+        there.ray_mm_per_depth_mm = length(axes_mm) / axes_mm.z;
+    }
+    there.found = true;
+    there.uv = unpack2x16unorm(surface.x);
+    there.chart = surface.y & 65535u;
+    there.distance_mm = max(axes_mm.z - depth_mm, 0.0) * there.ray_mm_per_depth_mm;
+    return there;
+}
+
+/// The paper's d: m where the normals at both ends agree, m cos theta where they are opposite, mm.
+fn corrected_mm(distance_mm: f32, normal: vec3f, normal_there: vec3f, dir_to_light: vec3f) -> f32 {
+    let opposite = max(-dot(normal_there, normal), 0.0);
+    return distance_mm * (1.0 + (abs(dot(normal, dir_to_light)) - 1.0) * opposite);
+}

@@ -1,0 +1,78 @@
+//! The surface unrolled: where every texel lies in space, which way it faces and how far it is stretched.
+//!
+//! Which triangle lies under a texel is found once, by cutis-render: it follows from the texture coordinates alone, and no
+//! deformation moves those. So charts, padding and their edges are the same on both backends.
+
+use crate::Gpu;
+use crate::map::Map;
+use crate::passes::{Samplers, over_charts};
+use crate::pipeline::{Blueprint, Bound, Pipeline};
+use crate::scene::charts::ChartTexture;
+use crate::scene::geometry::Geometry;
+use crate::scene::material::MaterialMaps;
+use crate::shaders;
+use crate::step::Step;
+use wgpu::TextureFormat as Format;
+
+/// The pass's pipeline.
+#[derive(Debug)]
+pub struct AtlasPass {
+    pipeline: Pipeline,
+}
+
+/// The unrolled surface.
+#[derive(Debug)]
+pub struct AtlasMaps {
+    /// Position in mm as bits, smooth normal packed in w.
+    pub places: Map,
+    /// Normal with relief and texture coordinates, packed.
+    pub reliefs: Map,
+    /// Millimetres per texel along u and v, lift in mm in z.
+    pub stretch: Map,
+}
+
+impl AtlasMaps {
+    /// Of `size` texels.
+    pub fn new(gpu: &Gpu, size: u32) -> Self {
+        Self {
+            places: Map::square(gpu, "places", size, 1, Format::Rgba32Uint),
+            reliefs: Map::square(gpu, "reliefs", size, 1, Format::Rg32Uint),
+            stretch: Map::square(gpu, "stretch", size, 1, Format::Rgba16Float),
+        }
+    }
+}
+
+impl AtlasPass {
+    /// Compiles it.
+    pub fn new(gpu: &Gpu) -> Self {
+        let targets = &[Format::Rgba32Uint, Format::Rg32Uint, Format::Rgba16Float];
+        let entries = ["cover_run", "unroll"];
+        let blueprint =
+            Blueprint { name: "atlas", source: shaders::ATLAS, entries, targets, additive: false, depth: false };
+        Self { pipeline: Pipeline::new(gpu, &blueprint) }
+    }
+
+    /// Fills the maps.
+    pub fn step(
+        &self,
+        gpu: &Gpu,
+        samplers: &Samplers,
+        geometry: &Geometry,
+        material: &MaterialMaps,
+        surface: &Map,
+        charts: &ChartTexture,
+        maps: &AtlasMaps,
+    ) -> Step {
+        let bound = [
+            (1, Bound::Buffer(&geometry.vertices)),
+            (2, Bound::Buffer(&geometry.triangles)),
+            (3, Bound::Buffer(&geometry.squared_stretch_mm2)),
+            (4, Bound::Texture(surface.view())),
+            (5, Bound::Buffer(&material.numbers)),
+            (6, Bound::Texture(material.relief.view())),
+            (7, Bound::Sampler(&samplers.repeating)),
+        ];
+        let targets = [maps.places.view(), maps.reliefs.view(), maps.stretch.view()];
+        over_charts(gpu, &self.pipeline, charts, &bound, &targets, false)
+    }
+}

@@ -61,7 +61,11 @@ impl Gpu {
     /// Name of the adapter and of what drives it, for reports.
     pub fn name(&self) -> String {
         let wgpu::AdapterInfo { name, driver, backend, .. } = &self.info;
-        if driver.is_empty() { format!("{name} ({backend})") } else { format!("{name} ({driver}, {backend})") }
+        if driver.is_empty() {
+            format!("{name} ({backend})")
+        } else {
+            format!("{name} ({driver}, {backend})")
+        }
     }
 
     /// A buffer of one uniform struct.

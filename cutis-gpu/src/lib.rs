@@ -20,5 +20,3 @@ pub use error::GpuError;
 pub use gpu::{Adapters, Gpu};
 pub use renderer::GpuRenderer;
 pub use scene::GpuScene;
-
-

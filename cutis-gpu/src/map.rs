@@ -101,6 +101,7 @@ fn usages(format: wgpu::TextureFormat) -> wgpu::TextureUsages {
 /// Values as 16-bit floats; what is larger than those reach is the largest of them.
 pub fn half_bytes(values: impl Iterator<Item = Vec4>) -> Vec<u8> {
     let largest = Vec4::splat(f16::MAX.to_f32());
-    let halves = values.flat_map(|v| v.clamp(-largest, largest).to_array().map(|c| f16::from_f32(c).to_bits()));
+    let halves =
+        values.flat_map(|v| v.clamp(-largest, largest).to_array().map(|c| f16::from_f32(c).to_bits()));
     halves.flat_map(u16::to_le_bytes).collect()
 }

@@ -45,9 +45,7 @@ impl Pipeline {
         let blend = additive.then_some(wgpu::BlendState { color: ADD, alpha: ADD });
         let targets: Vec<_> = targets
             .iter()
-            .map(|&format| {
-                Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL })
-            })
+            .map(|&format| Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL }))
             .collect();
         let depth_stencil = depth.then(|| wgpu::DepthStencilState {
             format: DEPTH,
@@ -126,12 +124,7 @@ pub enum Bound<'a> {
     Sampler(&'a wgpu::Sampler),
 }
 
-fn bind(
-    gpu: &Gpu,
-    label: &str,
-    layout: &wgpu::BindGroupLayout,
-    bound: &[(u32, Bound)],
-) -> wgpu::BindGroup {
+fn bind(gpu: &Gpu, label: &str, layout: &wgpu::BindGroupLayout, bound: &[(u32, Bound)]) -> wgpu::BindGroup {
     let entries: Vec<_> = bound
         .iter()
         .map(|&(binding, bound)| {

@@ -61,7 +61,8 @@ fn texel(format: Format, bytes: &[u8]) -> Vec4 {
     match format {
         Format::Rgba16Float => Vec4::from_array([0, 1, 2, 3].map(half)),
         Format::Rg16Float => Vec4::new(half(0), half(1), 0.0, 0.0),
-        Format::Rgba32Float => Vec4::from_array([0, 1, 2, 3].map(float)),
+        // Bits that are no numbers pass through unharmed.
+        Format::Rgba32Float | Format::Rgba32Uint => Vec4::from_array([0, 1, 2, 3].map(float)),
         Format::R32Float => Vec4::new(float(0), 0.0, 0.0, 0.0),
         Format::Rgba8Unorm => Vec4::from_array([0, 1, 2, 3].map(|i| f32::from(bytes[i]) / 255.0)),
         other => unreachable!("no pass draws {other:?} for anyone to read"),

@@ -50,7 +50,12 @@ impl GpuRenderer {
         GpuScene::new(&self.gpu, &self.passes, scene, settings, progress)
     }
 
-    fn frame(&self, scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Result<Frame, SceneError> {
+    fn frame(
+        &self,
+        scene: &Scene,
+        settings: &Settings,
+        progress: &dyn Progress,
+    ) -> Result<Frame, SceneError> {
         let start = Instant::now();
         let ready = self.scene(scene, settings, progress)?;
         let preparing = PassTime { name: "prepare".to_owned(), time: start.elapsed() };

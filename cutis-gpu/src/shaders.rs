@@ -16,13 +16,15 @@ pub const ATLAS: &str = wgsl!(
     "passes/atlas.wgsl"
 );
 /// Pass `shadow map`.
-pub const SHADOW: &str = wgsl!("lib/mesh.wgsl", "lib/lights.wgsl", "passes/shadow.wgsl");
+pub const SHADOW: &str =
+    wgsl!("lib/mesh.wgsl", "lib/lights.wgsl", "lib/light_map.wgsl", "passes/shadow.wgsl");
 /// Pass `shadows`.
 pub const VISIBILITY: &str = wgsl!(
     "lib/tiles.wgsl",
     "lib/charts.wgsl",
     "lib/packing.wgsl",
     "lib/lights.wgsl",
+    "lib/light_map.wgsl",
     "lib/sampling.wgsl",
     "lib/translucent.wgsl",
     "passes/visibility.wgsl"
@@ -47,8 +49,10 @@ pub const SHARES: &str = wgsl!(
     "lib/rho_dt.wgsl",
     "passes/shares.wgsl"
 );
+/// Pass `taps`.
+pub const TAPS: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "passes/taps.wgsl");
 /// Pass `blur`: one step along one axis.
-pub const BLUR: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "passes/blur.wgsl");
+pub const BLUR: &str = wgsl!("lib/tiles.wgsl", "passes/blur.wgsl");
 /// Pass `blur`: to half the size.
 pub const HALVE: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "passes/halve.wgsl");
 /// Pass `gather`.
@@ -59,6 +63,7 @@ pub const TRANSMISSION: &str = wgsl!(
     "lib/charts.wgsl",
     "lib/packing.wgsl",
     "lib/lights.wgsl",
+    "lib/light_map.wgsl",
     "lib/translucent.wgsl",
     "lib/levels.wgsl",
     "passes/transmission.wgsl"
@@ -87,13 +92,14 @@ pub const SKY: &str = wgsl!("lib/mesh.wgsl", "lib/camera.wgsl", "lib/environment
 pub const DOWNSAMPLE: &str = wgsl!("passes/downsample.wgsl");
 
 /// All of them by name.
-pub const ALL: [(&str, &str); 14] = [
+pub const ALL: [(&str, &str); 15] = [
     ("stretch", STRETCH),
     ("atlas", ATLAS),
     ("shadow", SHADOW),
     ("visibility", VISIBILITY),
     ("irradiance", IRRADIANCE),
     ("shares", SHARES),
+    ("taps", TAPS),
     ("blur", BLUR),
     ("halve", HALVE),
     ("gather", GATHER),

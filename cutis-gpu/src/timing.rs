@@ -55,24 +55,29 @@ impl Timing {
     ///
     /// # Errors
     /// If the device is lost.
-    pub fn run(&self, gpu: &Gpu, steps: &[Step]) -> Result<Vec<PassTime>, GpuError> {
+    pub fn run<'a>(
+        &self,
+        gpu: &Gpu,
+        steps: impl Iterator<Item = &'a Step>,
+    ) -> Result<Vec<PassTime>, GpuError> {
+        let steps: Vec<_> = steps.collect();
         match &self.queries {
-            Some(queries) if steps.len() <= self.steps as usize => self.run_stamped(gpu, steps, queries),
-            _ => run_one_by_one(gpu, steps),
+            Some(queries) if steps.len() <= self.steps as usize => self.run_stamped(gpu, &steps, queries),
+            _ => run_one_by_one(gpu, &steps),
         }
     }
 
     fn run_stamped(
         &self,
         gpu: &Gpu,
-        steps: &[Step],
+        steps: &[&Step],
         queries: &wgpu::QuerySet,
     ) -> Result<Vec<PassTime>, GpuError> {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         for (i, step) in (0..).zip(steps) {
             step.encode(&mut encoder, Some(Stamps { queries, first: 2 * i }));
         }
-        encoder.resolve_query_set(queries, 0..2 * self.steps, &self.resolved, 0);
+        encoder.resolve_query_set(queries, 0..2 * steps.len() as u32, &self.resolved, 0);
         encoder.copy_buffer_to_buffer(&self.resolved, 0, &self.readable, 0, self.readable.size());
         gpu.queue.submit([encoder.finish()]);
         let nanoseconds_per_tick = f64::from(gpu.queue.get_timestamp_period());
@@ -87,7 +92,7 @@ impl Timing {
     }
 }
 
-fn run_one_by_one(gpu: &Gpu, steps: &[Step]) -> Result<Vec<PassTime>, GpuError> {
+fn run_one_by_one(gpu: &Gpu, steps: &[&Step]) -> Result<Vec<PassTime>, GpuError> {
     let mut times = Vec::new();
     for step in steps {
         let start = Instant::now();

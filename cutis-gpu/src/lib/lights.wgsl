@@ -37,19 +37,22 @@ struct LightSample {
     irradiance_w_per_m2: vec3f,
 }
 
-fn sample_light(light: Light, point_mm: vec3f) -> LightSample {
-    if light.kind == DIRECTIONAL {
-        return LightSample(light.dir, 3.0e38, light.strength);
+/// Light number `l` as a point sees it. Lights are told by their number: what is not asked for is not fetched.
+fn sample_light(l: u32, point_mm: vec3f) -> LightSample {
+    let kind = lights[l].kind;
+    let strength = lights[l].strength;
+    if kind == DIRECTIONAL {
+        return LightSample(lights[l].dir, 3.0e38, strength);
     }
-    let to_light = light.position_mm - point_mm;
+    let to_light = lights[l].position_mm - point_mm;
     // A point at the light's very centre has no direction.
     let distance_mm = max(length(to_light), 1e-30);
     let dir_to_light = to_light / distance_mm;
     // Within a millimetre the inverse square of a real lamp no longer holds.
     let distance_m = max(distance_mm, 1.0) * 1e-3;
-    var irradiance = light.strength / (distance_m * distance_m);
-    if light.kind == SPOT {
-        irradiance *= spot_falloff(dot(light.dir, -dir_to_light), light.cos_inner, light.cos_outer);
+    var irradiance = strength / (distance_m * distance_m);
+    if kind == SPOT {
+        irradiance *= spot_falloff(dot(lights[l].dir, -dir_to_light), lights[l].cos_inner, lights[l].cos_outer);
     }
     return LightSample(dir_to_light, distance_mm, irradiance);
 }
@@ -58,21 +61,4 @@ fn spot_falloff(cos_axis: f32, cos_inner: f32, cos_outer: f32) -> f32 {
     // The specification's own floor for cones that coincide.
     let ramp = clamp((cos_axis - cos_outer) / max(cos_inner - cos_outer, 1e-3), 0.0, 1.0);
     return ramp * ramp;
-}
-
-/// A point in the axes of the light's map: to the right, up, and away from the light, mm.
-fn in_map_axes(light: Light, point_mm: vec3f) -> vec3f {
-    let p = point_mm - light.map_origin_mm;
-    return vec3f(dot(light.map_right, p), dot(light.map_up, p), dot(light.map_forward, p));
-}
-
-/// Half the width of what the map shows at a depth, mm.
-fn map_half_width_mm(light: Light, depth_mm: f32) -> f32 {
-    return light.map_half_width * select(depth_mm, 1.0, light.kind == DIRECTIONAL);
-}
-
-/// Where a point falls on the map: (0, 0) is the corner of its first texel.
-fn map_uv(light: Light, axes_mm: vec3f) -> vec2f {
-    let place = axes_mm.xy / map_half_width_mm(light, axes_mm.z);
-    return vec2f(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y);
 }

@@ -6,40 +6,40 @@ struct LightFacing {
     chart: u32,
     /// Distance m through the body towards the light, mm.
     distance_mm: f32,
-    /// What of it is along the ray for a millimetre of the map's depth.
-    ray_mm_per_depth_mm: f32,
+    /// How far across the light's direction the place may be off: half the diagonal of the map's texel, mm.
+    uncertain_mm: f32,
 }
 
-/// The surface nearest to the light on the way to `point_mm`, if it belongs to the object.
+/// The surface nearest to a light on the way to `point_mm`, if it belongs to the object.
 fn light_facing_surface(
-    light: Light,
+    map: LightMap,
     depths: texture_2d_array<f32>,
     surfaces: texture_2d_array<u32>,
     point_mm: vec3f,
     object: u32,
 ) -> LightFacing {
-    var there = LightFacing(false, vec2f(0.0), 0u, 0.0, 1.0);
-    if light.map_layer == NO_MAP {
+    var there = LightFacing(false, vec2f(0.0), 0u, 0.0, 0.0);
+    if map.layer == NO_MAP {
         return there;
     }
-    let axes_mm = in_map_axes(light, point_mm);
+    let axes_mm = in_map_axes(map, point_mm);
     let size = vec2f(textureDimensions(depths));
-    let texel = vec2i(floor(map_uv(light, axes_mm) * size));
+    let texel = vec2i(floor(map_uv(map, axes_mm) * size));
     if any(texel < vec2i(0)) || any(texel >= vec2i(size)) {
         return there;
     }
-    let depth_mm = textureLoad(depths, texel, light.map_layer, 0).x;
-    let surface = textureLoad(surfaces, texel, light.map_layer, 0).xy;
-    if depth_mm >= light.map_far_mm || (surface.y >> 16u) != object {
+    let depth_mm = textureLoad(depths, texel, map.layer, 0).x;
+    let surface = textureLoad(surfaces, texel, map.layer, 0).xy;
+    if depth_mm >= map.far_mm || (surface.y >> 16u) != object {
         return there;
     }
-    if light.kind != DIRECTIONAL {
-        there.ray_mm_per_depth_mm = length(axes_mm) / axes_mm.z;
-    }
+    // What is along the ray for a millimetre of the map's depth.
+    let ray_mm_per_depth_mm = select(length(axes_mm) / axes_mm.z, 1.0, map.directional);
     there.found = true;
+    there.uncertain_mm = 1.42 * map_half_width_mm(map, depth_mm) / size.x;
     there.uv = unpack2x16unorm(surface.x);
     there.chart = surface.y & 65535u;
-    there.distance_mm = max(axes_mm.z - depth_mm, 0.0) * there.ray_mm_per_depth_mm;
+    there.distance_mm = max(axes_mm.z - depth_mm, 0.0) * ray_mm_per_depth_mm;
     return there;
 }
 

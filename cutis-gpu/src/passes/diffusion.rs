@@ -14,10 +14,10 @@ use cutis_render::passes::diffusion::Action;
 use cutis_render::passes::tap::TAPS;
 use wgpu::TextureFormat as Format;
 
-/// Format of blurred stretch.
-const STRETCH: Format = Format::Rg16Float;
+/// Format of stretch and of variances: two numbers a texel.
+const PAIR: Format = Format::Rg16Float;
 
-/// How one step widens one layer; the twin of `Widening` in `blur.wgsl`.
+/// How one step widens along one axis; the twin of `Widening` in `taps.wgsl`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Widening {
@@ -27,32 +27,44 @@ pub struct Widening {
     pub to_mm2: f32,
     /// Variance in texel² that other means have added or will add.
     pub saved_texel2: f32,
-    /// Deviation in texels at the end of the table of spacings.
-    pub max_deviation: f32,
-    /// Weight of the centre and of one tap at each distance.
-    pub weights: [f32; 4],
     /// Variance of the weights at spacing 1, texel².
     pub unit_variance: f32,
+    /// Weight of the centre and of one tap at each distance.
+    pub weights: [f32; 4],
     /// 0 along u, 1 along v.
     pub axis: u32,
-    /// Layer of the light.
-    pub layer: u32,
-    /// Fills up the struct.
-    pub pad0: u32,
-}
-
-/// Which layer is halved; the twin of `Halved` in `halve.wgsl`.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Halved {
-    /// Layer of the light.
-    pub layer: u32,
     /// Fills up the struct.
     pub pad0: u32,
     /// Fills up the struct.
     pub pad1: u32,
     /// Fills up the struct.
     pub pad2: u32,
+}
+
+/// The line along which a layer is blurred; the twin of `Along` in `blur.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Along {
+    /// From one texel to the next.
+    pub step_texels: [i32; 2],
+    /// Fills up the struct.
+    pub pad0: u32,
+    /// Fills up the struct.
+    pub pad1: u32,
+}
+
+/// What is halved; the twin of `Halved` in `halve.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Halved {
+    /// Layer that is read.
+    pub layer: u32,
+    /// Factor on the mean.
+    pub factor: f32,
+    /// Fills up the struct.
+    pub pad0: u32,
+    /// Fills up the struct.
+    pub pad1: u32,
 }
 
 /// The light before any blur and after every Gaussian.
@@ -79,38 +91,45 @@ impl Levels {
     }
 }
 
-/// The pass's pipelines.
+/// The pass's pipelines and tables.
 #[derive(Debug)]
 pub struct DiffusionPass {
+    taps: Pipeline,
     blur: Pipeline,
-    blur_layer: Pipeline,
-    halve: Pipeline,
-    halve_layer: Pipeline,
-    tables: wgpu::Buffer,
+    halve_light: Pipeline,
+    halve_stretch: Pipeline,
+    narrow: wgpu::Buffer,
+}
+
+/// What has to be done.
+#[derive(Debug)]
+pub struct Diffusion {
+    /// Lays the taps: to be done when the geometry has changed.
+    pub taps: Vec<Step>,
+    /// Blurs the light.
+    pub blurs: Vec<Step>,
+    /// What that fills.
+    pub levels: Levels,
 }
 
 impl DiffusionPass {
     /// Compiles them.
     pub fn new(gpu: &Gpu) -> Self {
-        let pipeline = |source, entry, targets: &[Format]| {
+        let pipeline = |name, source, entry, targets: &[Format]| {
             let entries = ["cover_run", entry];
-            Pipeline::new(gpu, &Blueprint { name: "blur", source, entries, targets, additive: false, depth: false })
+            Pipeline::new(gpu, &Blueprint { name, source, entries, targets, additive: false, depth: false })
         };
-        let both = &[Format::Rgba16Float, STRETCH];
         let light = &[Format::Rgba16Float];
-        let mut tables = TAPS.spacing.clone();
-        tables.extend(&TAPS.narrow);
-        tables.extend(TAPS.cells.as_flattened());
         Self {
-            blur: pipeline(shaders::BLUR, "blur", both),
-            blur_layer: pipeline(shaders::BLUR, "blur_layer", light),
-            halve: pipeline(shaders::HALVE, "halve", both),
-            halve_layer: pipeline(shaders::HALVE, "halve_layer", light),
-            tables: gpu.storage("taps", &tables),
+            taps: pipeline("taps", shaders::TAPS, "lay_taps", &[PAIR, PAIR]),
+            blur: pipeline("blur", shaders::BLUR, "blur", light),
+            halve_light: pipeline("blur", shaders::HALVE, "halve", light),
+            halve_stretch: pipeline("taps", shaders::HALVE, "halve", &[PAIR]),
+            narrow: gpu.storage("discrete variances", &TAPS.narrow),
         }
     }
 
-    /// The steps of a plan, and the levels they fill. `charts` are those of the first level and of every halved one.
+    /// The steps of a plan. `charts` are those of the first level and of every halved one.
     pub fn steps(
         &self,
         gpu: &Gpu,
@@ -118,17 +137,30 @@ impl DiffusionPass {
         light: &Map,
         stretch: &Map,
         plan: &[Action],
-    ) -> (Vec<Step>, Levels) {
+    ) -> Diffusion {
         let mut way = Way::new(self, gpu, charts, light, stretch);
-        for (i, action) in plan.iter().enumerate() {
-            match *action {
+        for action in without_steps_between(plan) {
+            match action {
                 Action::Halve => way.halve(),
-                Action::Step(widening) => way.step(widening, plan.get(i + 1) == Some(&Action::Keep)),
+                Action::Step(widening) => way.step(widening),
                 Action::Keep => way.levels.push(way.level()),
             }
         }
-        (way.steps, Levels { all: way.levels })
+        Diffusion { taps: way.taps, blurs: way.blurs, levels: Levels { all: way.levels } }
     }
+}
+
+/// Steps in between keep taps from being too far apart. A Gaussian sampled at every texel needs none: one step does what
+/// several in a row would do.
+fn without_steps_between(plan: &[Action]) -> Vec<Action> {
+    let mut actions: Vec<Action> = Vec::new();
+    for &action in plan {
+        match (actions.last_mut(), action) {
+            (Some(Action::Step(before)), Action::Step(next)) => before.to_mm2 = next.to_mm2,
+            _ => actions.push(action),
+        }
+    }
+    actions
 }
 
 /// Where a plan has got to.
@@ -139,37 +171,33 @@ struct Way<'a> {
     halvings: usize,
     light: Map,
     stretch: Map,
-    rooms: Rooms,
-    steps: Vec<Step>,
+    /// Light blurred along u only.
+    half_way: Map,
+    taps: Vec<Step>,
+    blurs: Vec<Step>,
     levels: Vec<Level>,
 }
 
-/// Textures of one size that steps pass their results through.
-struct Rooms {
-    /// Blurred along u.
-    half_way: (Map, Map),
-    /// Blurred along both.
-    done: (Map, Map),
-}
-
-impl Rooms {
-    fn new(gpu: &Gpu, size: u32, layers: u32) -> Self {
-        let room = || {
-            (
-                Map::square(gpu, "blurred light", size, layers, Format::Rgba16Float),
-                Map::square(gpu, "blurred stretch", size, 1, STRETCH),
-            )
-        };
-        Self { half_way: room(), done: room() }
-    }
-}
-
 impl<'a> Way<'a> {
-    fn new(pass: &'a DiffusionPass, gpu: &'a Gpu, charts: &'a [ChartTexture], light: &Map, stretch: &Map) -> Self {
-        let rooms = Rooms::new(gpu, charts[0].size, light.layers.len() as u32);
-        let levels = vec![Level { charts: charts[0].clone(), light: light.clone() }];
-        let (light, stretch) = (light.clone(), stretch.clone());
-        Self { pass, gpu, charts, halvings: 0, light, stretch, rooms, steps: Vec::new(), levels }
+    fn new(
+        pass: &'a DiffusionPass,
+        gpu: &'a Gpu,
+        charts: &'a [ChartTexture],
+        light: &Map,
+        stretch: &Map,
+    ) -> Self {
+        Self {
+            half_way: same_layers(gpu, "blurred light", charts[0].size, light),
+            levels: vec![Level { charts: charts[0].clone(), light: light.clone() }],
+            light: light.clone(),
+            stretch: stretch.clone(),
+            taps: Vec::new(),
+            blurs: Vec::new(),
+            halvings: 0,
+            pass,
+            gpu,
+            charts,
+        }
     }
 
     fn charts(&self) -> &'a ChartTexture {
@@ -183,84 +211,90 @@ impl<'a> Way<'a> {
     fn halve(&mut self) {
         let fine = self.charts();
         self.halvings += 1;
-        let layers = self.light.layers.len() as u32;
-        self.rooms = Rooms::new(self.gpu, self.charts().size, layers);
-        let (light, stretch) = self.rooms.done.clone();
-        for layer in 0..layers {
-            let numbers = self.gpu.uniform("halved", &Halved { layer, ..Halved::zeroed() });
-            let bound = [
-                (1, Bound::Buffer(&numbers)),
-                (2, Bound::Texture(fine.map.view())),
-                (3, Bound::Texture(self.charts().map.view())),
-                (4, Bound::Texture(&self.light.array)),
-                (5, Bound::Texture(self.stretch.view())),
-            ];
-            let [with_stretch, alone] = [&self.pass.halve, &self.pass.halve_layer];
-            let step = self.draw([with_stretch, alone], &bound, layer, &light, &stretch);
-            self.steps.push(step);
+        let size = self.charts().size;
+        self.half_way = same_layers(self.gpu, "blurred light", size, &self.light);
+        let light = same_layers(self.gpu, "halved light", size, &self.light);
+        for (layer, target) in (0..).zip(&light.layers) {
+            let halved = Halved { layer, factor: 1.0, ..Halved::zeroed() };
+            self.blurs.push(self.halved(&self.pass.halve_light, fine, halved, &self.light, target));
         }
+        let stretch = Map::square(self.gpu, "stretch", size, 1, PAIR);
+        let halved = Halved { factor: 2.0, ..Halved::zeroed() };
+        self.taps.push(self.halved(&self.pass.halve_stretch, fine, halved, &self.stretch, stretch.view()));
         (self.light, self.stretch) = (light, stretch);
     }
 
-    /// Blurs along u, then along v; into a map of its own if that is kept.
-    fn step(&mut self, widening: blur::Widening, kept: bool) {
-        let half_way = self.rooms.half_way.clone();
-        self.blur(widening, 0, &half_way);
-        (self.light, self.stretch) = half_way;
-        let mut done = self.rooms.done.clone();
-        if kept {
-            let layers = self.light.layers.len() as u32;
-            done.0 = Map::square(self.gpu, "level", self.charts().size, layers, Format::Rgba16Float);
-        }
-        self.blur(widening, 1, &done);
-        (self.light, self.stretch) = done;
+    fn halved(
+        &self,
+        pipeline: &Pipeline,
+        fine: &ChartTexture,
+        halved: Halved,
+        source: &Map,
+        target: &wgpu::TextureView,
+    ) -> Step {
+        let numbers = self.gpu.uniform("halved", &halved);
+        let bound = [
+            (1, Bound::Buffer(&numbers)),
+            (2, Bound::Texture(fine.map.view())),
+            (3, Bound::Texture(self.charts().map.view())),
+            (4, Bound::Texture(&source.array)),
+        ];
+        over_charts(self.gpu, pipeline, self.charts(), &bound, &[target], false)
     }
 
-    fn blur(&mut self, widening: blur::Widening, axis: u32, (light, stretch): &(Map, Map)) {
-        for layer in 0..self.light.layers.len() as u32 {
-            let numbers = self.gpu.uniform("widening", &numbers(widening, axis, layer));
+    /// Blurs along u, then along v into a map of its own, for it is kept.
+    fn step(&mut self, widening: blur::Widening) {
+        self.blur(widening, 0, self.half_way.clone());
+        let level = same_layers(self.gpu, "level", self.charts().size, &self.light);
+        self.blur(widening, 1, level);
+    }
+
+    fn blur(&mut self, widening: blur::Widening, axis: u32, target: Map) {
+        let variances = self.lay_taps(widening, axis);
+        let step_texels = if axis == 0 { [1, 0] } else { [0, 1] };
+        let numbers = self.gpu.uniform("along", &Along { step_texels, ..Along::zeroed() });
+        for (source, target) in self.light.layers.iter().zip(&target.layers) {
             let bound = [
                 (1, Bound::Buffer(&numbers)),
-                (2, Bound::Texture(self.charts().map.view())),
-                (3, Bound::Texture(&self.light.array)),
-                (4, Bound::Texture(self.stretch.view())),
-                (5, Bound::Buffer(&self.pass.tables)),
+                (2, Bound::Texture(source)),
+                (3, Bound::Texture(variances.view())),
             ];
-            let [with_stretch, alone] = [&self.pass.blur, &self.pass.blur_layer];
-            let step = self.draw([with_stretch, alone], &bound, layer, light, stretch);
-            self.steps.push(step);
+            self.blurs.push(over_charts(self.gpu, &self.pass.blur, self.charts(), &bound, &[target], false));
         }
+        self.light = target;
     }
 
-    /// The stretch is drawn along with the first layer.
-    fn draw(
-        &self,
-        [with_stretch, alone]: [&Pipeline; 2],
-        bound: &[(u32, Bound)],
-        layer: u32,
-        light: &Map,
-        stretch: &Map,
-    ) -> Step {
-        let target = &light.layers[layer as usize];
-        let charts = &self.charts[self.halvings];
-        if layer == 0 {
-            over_charts(self.gpu, with_stretch, charts, bound, &[target, stretch.view()], false)
-        } else {
-            over_charts(self.gpu, alone, charts, bound, &[target], false)
-        }
+    /// Variances along an axis; the stretch is blurred by them.
+    fn lay_taps(&mut self, widening: blur::Widening, axis: u32) -> Map {
+        let size = self.charts().size;
+        let variances = Map::square(self.gpu, "variances", size, 1, PAIR);
+        let stretch = Map::square(self.gpu, "stretch", size, 1, PAIR);
+        let numbers = self.gpu.uniform("widening", &numbers(widening, axis));
+        let bound = [
+            (1, Bound::Buffer(&numbers)),
+            (2, Bound::Texture(self.charts().map.view())),
+            (3, Bound::Texture(self.stretch.view())),
+            (4, Bound::Buffer(&self.pass.narrow)),
+        ];
+        let targets = [variances.view(), stretch.view()];
+        self.taps.push(over_charts(self.gpu, &self.pass.taps, self.charts(), &bound, &targets, false));
+        self.stretch = stretch;
+        variances
     }
 }
 
-fn numbers(widening: blur::Widening, axis: u32, layer: u32) -> Widening {
+fn same_layers(gpu: &Gpu, label: &str, size: u32, like: &Map) -> Map {
+    Map::square(gpu, label, size, like.layers.len() as u32, Format::Rgba16Float)
+}
+
+fn numbers(widening: blur::Widening, axis: u32) -> Widening {
     Widening {
         from_mm2: widening.from_mm2,
         to_mm2: widening.to_mm2,
         saved_texel2: widening.saved_texel2,
-        max_deviation: TAPS.max_deviation,
         weights: TAPS.weights,
         unit_variance: TAPS.unit_variance,
         axis,
-        layer,
-        pad0: 0,
+        ..Widening::zeroed()
     }
 }

@@ -42,8 +42,7 @@ impl DownsamplePass {
 
     /// From `samples`, `grid` times as wide and high, to `pixels`.
     pub fn step(&self, gpu: &Gpu, grid: u32, samples: &Map, pixels: &Map) -> Step {
-        let pipeline =
-            if pixels.texture.format() == Format::Rgba16Float { &self.half } else { &self.single };
+        let pipeline = if pixels.texture.format() == Format::Rgba16Float { &self.half } else { &self.single };
         let numbers = gpu.uniform("pixels", &Pixels { grid: grid as i32, ..Pixels::zeroed() });
         let bound = [(0, Bound::Texture(samples.view())), (1, Bound::Buffer(&numbers))];
         Step::Draw(Draw {

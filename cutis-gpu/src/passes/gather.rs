@@ -24,39 +24,45 @@ pub struct Gaussian {
 /// The pass's pipeline.
 #[derive(Debug)]
 pub struct GatherPass {
-    pipeline: Pipeline,
+    full_size: Pipeline,
+    smaller: Pipeline,
 }
 
 impl GatherPass {
     /// Compiles it.
     pub fn new(gpu: &Gpu) -> Self {
-        let blueprint = Blueprint {
-            name: "gather",
-            source: shaders::GATHER,
-            entries: ["cover_run", "gather"],
-            targets: &[Format::Rgba16Float],
-            additive: true,
-            depth: false,
+        let pipeline = |entry| {
+            let (entries, targets) = (["cover_run", entry], &[Format::Rgba16Float]);
+            let (name, source) = ("gather", shaders::GATHER);
+            Pipeline::new(gpu, &Blueprint { name, source, entries, targets, additive: true, depth: false })
         };
-        Self { pipeline: Pipeline::new(gpu, &blueprint) }
+        Self { full_size: pipeline("gather_texel"), smaller: pipeline("gather") }
     }
 
     /// Adds up all Gaussians.
-    pub fn steps(&self, gpu: &Gpu, kernel: &Kernel, levels: &Levels, target: &wgpu::TextureView) -> Vec<Step> {
+    pub fn steps(
+        &self,
+        gpu: &Gpu,
+        kernel: &Kernel,
+        levels: &Levels,
+        target: &wgpu::TextureView,
+    ) -> Vec<Step> {
         let add = |(i, weight): (usize, &glam::Vec3)| {
             let gaussian = gpu.uniform("Gaussian", &Gaussian { weight: weight.to_array(), pad0: 0.0 });
             let (level, finer, finest) = (&levels.all[i + 1], levels.finer_than(i + 1), &levels.all[0]);
-            let bound = [
-                (1, Bound::Buffer(&gaussian)),
+            let own = [(1, Bound::Buffer(&gaussian)), (3, Bound::Texture(&level.light.array))];
+            if level.charts.size == finest.charts.size {
+                return over_charts(gpu, &self.full_size, &finest.charts, &own, &[target], i == 0);
+            }
+            let others = [
                 (2, Bound::Texture(finest.charts.map.view())),
-                (3, Bound::Texture(&level.light.array)),
                 (4, Bound::Texture(level.charts.map.view())),
                 (5, Bound::Texture(&finer.light.array)),
                 (6, Bound::Texture(finer.charts.map.view())),
                 (7, Bound::Texture(&finest.light.array)),
-                (8, Bound::Texture(finest.charts.map.view())),
             ];
-            over_charts(gpu, &self.pipeline, &finest.charts, &bound, &[target], i == 0)
+            let bound = [own.as_slice(), &others].concat();
+            over_charts(gpu, &self.smaller, &finest.charts, &bound, &[target], i == 0)
         };
         kernel.weights.iter().enumerate().map(add).collect()
     }

@@ -8,11 +8,16 @@
 @group(0) @binding(5) var finer: texture_2d_array<f32>;
 @group(0) @binding(6) var finer_charts: texture_2d<u32>;
 @group(0) @binding(7) var finest: texture_2d_array<f32>;
-@group(0) @binding(8) var finest_charts: texture_2d<u32>;
 
 struct Gaussian {
     weight: vec3f,
     pad0: f32,
+}
+
+/// For a level of full size, whose texels are those of the sum.
+@fragment
+fn gather_texel(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    return vec4f(gaussian.weight * textureLoad(level, vec2i(position.xy), 0, 0).rgb, 0.0);
 }
 
 @fragment
@@ -22,6 +27,6 @@ fn gather(@builtin(position) position: vec4f) -> @location(0) vec4f {
         return vec4f(0.0);
     }
     let uv = position.xy / vec2f(textureDimensions(charts));
-    let light = sample_level(level, level_charts, finer, finer_charts, finest, finest_charts, 0u, uv, chart);
+    let light = sample_level(level, level_charts, finer, finer_charts, finest, 0u, uv, chart);
     return vec4f(gaussian.weight * light.rgb, 0.0);
 }

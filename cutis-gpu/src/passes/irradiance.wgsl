@@ -36,7 +36,7 @@ fn light_texel(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let roughness = scalar_at(material.roughness, textureSampleLevel(roughness_map, repeating, uv, 0.0));
     var light_in = vec3f(0.0);
     for (var l = 0u; l < arrayLength(&lights); l++) {
-        let towards = sample_light(lights[l], point_mm);
+        let towards = sample_light(l, point_mm);
         let visible = textureLoad(visibility, texel, l / 4u, 0)[l % 4u];
         // Relief may turn a normal away from a light that the smooth surface faces.
         let cos = max(dot(normal, towards.dir_to_light), 0.0);

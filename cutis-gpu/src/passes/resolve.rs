@@ -209,7 +209,12 @@ fn bind(gpu: &Gpu, pipeline: &Pipeline, inputs: &ResolveInputs) -> wgpu::BindGro
     pipeline.bind(gpu, 0, &bound)
 }
 
-fn draw(pipeline: &Pipeline, bind_groups: Vec<wgpu::BindGroup>, inputs: &ResolveInputs, canvas: &Canvas) -> Step {
+fn draw(
+    pipeline: &Pipeline,
+    bind_groups: Vec<wgpu::BindGroup>,
+    inputs: &ResolveInputs,
+    canvas: &Canvas,
+) -> Step {
     Step::Draw(Draw {
         pass: pipeline.name,
         pipeline: pipeline.raw.clone(),

@@ -95,7 +95,7 @@ fn specular(place: Place, texels: Around, weights: vec4f) -> vec3f {
     let shine = Shine(place.normal, place.dir_to_eye, place.rho_s, place.roughness, material.f0);
     var sum = vec3f(0.0);
     for (var l = 0u; l < arrayLength(&lights); l++) {
-        let towards = sample_light(lights[l], place.position_mm);
+        let towards = sample_light(l, place.position_mm);
         if dot(place.smooth_normal, towards.dir_to_light) >= 0.0 {
             let visible = blend_layer(visibility, l / 4u, texels, weights)[l % 4u];
             sum += from_light(shine, towards) * visible;

@@ -30,12 +30,12 @@ struct Mapped {
 fn see_from_light(@builtin(vertex_index) index: u32) -> Seen {
     let triangle = triangles[index / 3u];
     let vertex = vertices[triangle[index % 3u]];
-    let light = lights[drawn.light];
-    let axes_mm = in_map_axes(light, vertex.position_mm);
-    let depth = (axes_mm.z - light.map_near_mm) / (light.map_far_mm - light.map_near_mm);
-    var position = vec4f(axes_mm.xy / light.map_half_width, depth, 1.0);
-    if light.kind != DIRECTIONAL {
-        position = vec4f(axes_mm.xy / light.map_half_width, depth * light.map_far_mm, axes_mm.z);
+    let map = map_of(drawn.light);
+    let axes_mm = in_map_axes(map, vertex.position_mm);
+    let depth = (axes_mm.z - map.near_mm) / (map.far_mm - map.near_mm);
+    var position = vec4f(axes_mm.xy / map.half_width, depth, 1.0);
+    if !map.directional {
+        position = vec4f(axes_mm.xy / map.half_width, depth * map.far_mm, axes_mm.z);
     }
     return Seen(position, axes_mm.z, vec2f(vertex.u, vertex.v), triangle.w);
 }

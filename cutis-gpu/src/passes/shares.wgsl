@@ -32,7 +32,7 @@ fn share_lights(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var whole = 0.0;
     var shares = vec4f(0.0);
     for (var l = 0u; l < arrayLength(&lights); l++) {
-        let towards = sample_light(lights[l], point_mm);
+        let towards = sample_light(l, point_mm);
         let visible = textureLoad(visibility, texel, l / 4u, 0)[l % 4u];
         let cos = max(dot(normal, towards.dir_to_light), 0.0);
         let entered = dot(towards.irradiance_w_per_m2, vec3f(1.0)) * cos * visible

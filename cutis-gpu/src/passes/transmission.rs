@@ -91,7 +91,13 @@ impl TransmissionPass {
 
     /// Adds up what comes through by every Gaussian and smooths it, `rounds` with so many texels between those taken in.
     /// Gives the steps, and the one of two maps that holds the result.
-    pub fn steps(&self, gpu: &Gpu, inputs: &TransmissionInputs, rounds: &[usize], maps: [Map; 2]) -> (Vec<Step>, Map) {
+    pub fn steps(
+        &self,
+        gpu: &Gpu,
+        inputs: &TransmissionInputs,
+        rounds: &[usize],
+        maps: [Map; 2],
+    ) -> (Vec<Step>, Map) {
         let [mut from, mut to] = maps;
         let gaussians = inputs.kernel.weights.len();
         let mut steps: Vec<_> = (0..gaussians).map(|i| self.gaussian(gpu, inputs, i, from.view())).collect();
@@ -121,6 +127,7 @@ impl TransmissionPass {
         );
         let levels = &inputs.levels.all;
         let (before, level, finest) = (&levels[i], &levels[i + 1], &levels[0]);
+        let finer = inputs.levels.finer_than(i + 1);
         // A single light's share is not read; something has to be bound.
         let shares = inputs.shares.unwrap_or(&finest.light);
         let bound = [
@@ -138,6 +145,8 @@ impl TransmissionPass {
             (12, Bound::Texture(&level.light.array)),
             (13, Bound::Texture(level.charts.map.view())),
             (14, Bound::Texture(&finest.light.array)),
+            (15, Bound::Texture(&finer.light.array)),
+            (16, Bound::Texture(finer.charts.map.view())),
         ];
         over_charts(gpu, &self.transmit, inputs.half_charts, &bound, &[target], i == 0)
     }

@@ -16,6 +16,9 @@
 @group(0) @binding(12) var level: texture_2d_array<f32>;
 @group(0) @binding(13) var level_charts: texture_2d<u32>;
 @group(0) @binding(14) var finest: texture_2d_array<f32>;
+/// What the light is read from in charts that are too thin for its level.
+@group(0) @binding(15) var finer: texture_2d_array<f32>;
+@group(0) @binding(16) var finer_charts: texture_2d<u32>;
 
 struct Slab {
     weight: vec3f,
@@ -43,14 +46,12 @@ fn transmit(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let uv = (vec2f(texel) + 0.5) / vec2f(textureDimensions(places));
     var sum = vec3f(0.0);
     for (var l = 0u; l < arrayLength(&lights); l++) {
-        let towards = sample_light(lights[l], point_mm);
+        let towards = sample_light(l, point_mm);
         let through = slab_weight(distance_before_mm(l, uv, chart));
-        if dot(normal, towards.dir_to_light) >= 0.0 || through <= VISIBLE {
-            continue;
-        }
-        let there = light_facing_surface(lights[l], depths, surfaces, point_mm, slab.object);
-        if there.found {
-            let faded = through * fade_out(apart_mm(uv, normal, chart, there));
+        if through > VISIBLE && dot(normal, towards.dir_to_light) < 0.0 {
+            let there = light_facing_surface(map_of(l), depths, surfaces, point_mm, slab.object);
+            let apart_mm = apart_mm(uv, normal, chart, there) - uncertain_mm(there, towards.dir_to_light);
+            let faded = select(0.0, through * fade_out(max(apart_mm, 0.0)), there.found);
             sum += light_at(there) * (faded * share(l, there));
         }
     }
@@ -72,12 +73,12 @@ fn point_under(chart: u32, corner: vec2i) -> vec2i {
 fn distance_before_mm(l: u32, uv: vec2f, chart: u32) -> f32 {
     let layer = select(0u, 1u + l / 4u, slab.many_lights == 1u);
     let component = select(3u, l % 4u, slab.many_lights == 1u);
-    return sample_level(before, before_charts, finest, atlas_charts, finest, atlas_charts, layer, uv, chart)[component];
+    return sample_level(before, before_charts, finest, atlas_charts, finest, layer, uv, chart)[component];
 }
 
 fn light_at(there: LightFacing) -> vec3f {
     return sample_level(
-        level, level_charts, finest, atlas_charts, finest, atlas_charts, 0u, there.uv, there.chart,
+        level, level_charts, finer, finer_charts, finest, 0u, there.uv, there.chart,
     ).rgb;
 }
 
@@ -103,6 +104,14 @@ fn apart_mm(uv: vec2f, normal: vec3f, chart: u32, there: LightFacing) -> f32 {
     let opposite = clamp(-dot(normal_there, normal), 0.0, 1.0);
     // 1e-6 keeps the quotient finite; a micrometre over it is a metre.
     return there.distance_mm / max(1.0 - opposite, 1e-6);
+}
+
+/// How far along the light-facing surface the place may be off: what the map cannot tell apart is not apart, mm.
+fn uncertain_mm(there: LightFacing, dir_to_light: vec3f) -> f32 {
+    let texel = vec2i(there.uv * vec2f(textureDimensions(places)));
+    let cos = dot(unpack_unit(textureLoad(places, texel, 0).w), dir_to_light);
+    // Seen at less than 3 degrees a surface has no place on the map.
+    return there.uncertain_mm / max(cos, 0.05);
 }
 
 /// exp(-d²/2v): what a slab of thickness d leaves of a Gaussian of variance v.

@@ -4,8 +4,8 @@
 use crate::Gpu;
 use crate::map::Map;
 use crate::passes::atlas::AtlasMaps;
-use crate::passes::shadow::ShadowMaps;
 use crate::passes::over_charts;
+use crate::passes::shadow::ShadowMaps;
 use crate::pipeline::{Blueprint, Bound, Pipeline};
 use crate::scene::charts::ChartTexture;
 use crate::shaders;

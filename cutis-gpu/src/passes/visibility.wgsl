@@ -51,21 +51,24 @@ fn see_lights(@builtin(position) position: vec4f) -> Visibility {
     let normal = unpack_unit(place.w);
     let lift_mm = textureLoad(stretch_map, texel, 0).z;
     for (var i = 0u; i < group_of.light_count; i++) {
-        let light = lights[group_of.first_light + i];
-        let towards = sample_light(light, point_mm);
-        if dot(normal, towards.dir_to_light) >= 0.0 {
-            let shift = random2(vec2u(texel), STREAM + group_of.first_light + i);
-            result.seen[i] = visible_fraction(light, point_mm + normal * lift_mm, normal, shift);
-        } else {
-            result.distance_mm[i] = distance_mm(light, point_mm, normal, towards.dir_to_light);
+        let l = group_of.first_light + i;
+        let towards = sample_light(l, point_mm);
+        let map = map_of(l);
+        let faces = dot(normal, towards.dir_to_light) >= 0.0;
+        if faces {
+            let shift = random2(vec2u(texel), STREAM + l);
+            result.seen[i] = visible_fraction(map, lights[l].extent, point_mm + normal * lift_mm, normal, shift);
+        }
+        if !faces {
+            result.distance_mm[i] = distance_mm(map, point_mm, normal, towards.dir_to_light);
         }
     }
     return result;
 }
 
 /// Distance d through the body, never more than what is opaque anyway, mm.
-fn distance_mm(light: Light, point_mm: vec3f, normal: vec3f, dir_to_light: vec3f) -> f32 {
-    let there = light_facing_surface(light, depths, surfaces, point_mm, group_of.object);
+fn distance_mm(map: LightMap, point_mm: vec3f, normal: vec3f, dir_to_light: vec3f) -> f32 {
+    let there = light_facing_surface(map, depths, surfaces, point_mm, group_of.object);
     if !there.found {
         return group_of.opaque_mm;
     }
@@ -84,59 +87,58 @@ struct Receiver {
     bias_mm: f32,
 }
 
-fn visible_fraction(light: Light, point_mm: vec3f, normal: vec3f, shift: vec2f) -> f32 {
-    if light.map_layer == NO_MAP {
+fn visible_fraction(map: LightMap, extent: f32, point_mm: vec3f, normal: vec3f, shift: vec2f) -> f32 {
+    if map.layer == NO_MAP {
         return 1.0;
     }
-    let to = receiver(light, point_mm, normal);
+    let to = receiver(map, point_mm, normal);
     if any(to.uv < vec2f(0.0)) || any(to.uv > vec2f(1.0)) {
         return 1.0;
     }
-    if light.extent <= 0.0 {
-        return lit_share(light, to, to.uv);
+    if extent <= 0.0 {
+        return lit_share(map, to, to.uv);
     }
-    let hidden_by_mm = blocker_depth_mm(light, to, shift);
-    if hidden_by_mm <= 0.0 {
-        return 1.0;
-    }
-    let radius = disc_radius(light, to.axes_mm.z, hidden_by_mm);
+    let hidden_by_mm = blocker_depth_mm(map, extent, to, shift);
+    // Where nothing is in between there is nothing to be tried.
+    let samples = select(0u, group_of.samples, hidden_by_mm > 0.0);
+    let radius = disc_radius(map, extent, to.axes_mm.z, hidden_by_mm);
     var sum = 0.0;
-    for (var s = 0u; s < group_of.samples; s++) {
-        sum += lit_share(light, to, to.uv + radius * disc(r2_point(s, shift)));
+    for (var s = 0u; s < samples; s++) {
+        sum += lit_share(map, to, to.uv + radius * disc(r2_point(s, shift)));
     }
-    return sum / f32(group_of.samples);
+    return select(1.0, sum / f32(group_of.samples), samples > 0u);
 }
 
-fn receiver(light: Light, point_mm: vec3f, normal: vec3f) -> Receiver {
-    let n = vec3f(dot(light.map_right, normal), dot(light.map_up, normal), dot(light.map_forward, normal));
-    let depth_mm = in_map_axes(light, point_mm).z;
-    let texel_mm = 2.0 * map_half_width_mm(light, depth_mm) / f32(textureDimensions(depths).x);
+fn receiver(map: LightMap, point_mm: vec3f, normal: vec3f) -> Receiver {
+    let n = vec3f(dot(map.right, normal), dot(map.up, normal), dot(map.forward, normal));
+    let depth_mm = in_map_axes(map, point_mm).z;
+    let texel_mm = 2.0 * map_half_width_mm(map, depth_mm) / f32(textureDimensions(depths).x);
     // Half a texel outwards: the surface may be curved, and the map holds flat triangles.
-    let axes_mm = in_map_axes(light, point_mm + normal * (0.5 * texel_mm));
+    let axes_mm = in_map_axes(map, point_mm + normal * (0.5 * texel_mm));
     let slope = min(length(n.xy) / max(abs(n.z), 1e-3), MAX_SLOPE);
     // The last term is rounding.
-    return Receiver(axes_mm, map_uv(light, axes_mm), n, 0.5 * texel_mm * slope * READ_TEXELS + 2e-6 * depth_mm);
+    return Receiver(axes_mm, map_uv(map, axes_mm), n, 0.5 * texel_mm * slope * READ_TEXELS + 2e-6 * depth_mm);
 }
 
 /// Radius on the map of the cone from a point to the light's disc, where something at `hidden_by_mm` cuts it.
-fn disc_radius(light: Light, depth_mm: f32, hidden_by_mm: f32) -> f32 {
+fn disc_radius(map: LightMap, extent: f32, depth_mm: f32, hidden_by_mm: f32) -> f32 {
     let gap_mm = max(depth_mm - hidden_by_mm, 0.0);
-    if light.kind == DIRECTIONAL {
-        return 0.5 * light.extent * gap_mm / light.map_half_width;
+    if map.directional {
+        return 0.5 * extent * gap_mm / map.half_width;
     }
-    return 0.5 * light.extent * gap_mm / (depth_mm * map_half_width_mm(light, hidden_by_mm));
+    return 0.5 * extent * gap_mm / (depth_mm * map_half_width_mm(map, hidden_by_mm));
 }
 
 /// Mean depth of what lies before the point, as seen from the light's disc; 0 if nothing does.
-fn blocker_depth_mm(light: Light, to: Receiver, shift: vec2f) -> f32 {
-    let radius = disc_radius(light, to.axes_mm.z, light.map_near_mm);
+fn blocker_depth_mm(map: LightMap, extent: f32, to: Receiver, shift: vec2f) -> f32 {
+    let radius = disc_radius(map, extent, to.axes_mm.z, map.near_mm);
     var sum_mm = 0.0;
     var count = 0.0;
-    for (var s = 0u; s < SEARCH_SAMPLES; s++) {
+    for (var s = 0u; s < select(0u, SEARCH_SAMPLES, extent > 0.0); s++) {
         let uv = to.uv + radius * disc(r2_point(s, shift));
         let texel = vec2i(uv * vec2f(textureDimensions(depths)));
-        let depth_mm = textureLoad(depths, texel, light.map_layer, 0).x;
-        if depth_mm < plane_depth_mm(light, to, uv) - to.bias_mm && inside(uv) {
+        let depth_mm = textureLoad(depths, texel, map.layer, 0).x;
+        if depth_mm < plane_depth_mm(map, to, uv) - to.bias_mm && inside(uv) {
             sum_mm += depth_mm;
             count += 1.0;
         }
@@ -145,15 +147,15 @@ fn blocker_depth_mm(light: Light, to: Receiver, shift: vec2f) -> f32 {
 }
 
 /// Depth of the point's tangent plane elsewhere on the map, if that is nearer to the light than the point, mm.
-fn plane_depth_mm(light: Light, to: Receiver, uv: vec2f) -> f32 {
-    let place = vec2f(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y) * light.map_half_width;
+fn plane_depth_mm(map: LightMap, to: Receiver, uv: vec2f) -> f32 {
+    let place = vec2f(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y) * map.half_width;
     var depth_mm = to.axes_mm.z;
-    if light.kind == DIRECTIONAL {
+    if map.directional {
         depth_mm += dot(to.normal.xy, to.axes_mm.xy - place) / min(to.normal.z, -1e-3);
     } else {
         depth_mm = dot(to.normal, to.axes_mm) / min(dot(to.normal, vec3f(place, 1.0)), -1e-3);
     }
-    return clamp(depth_mm, light.map_near_mm, to.axes_mm.z);
+    return clamp(depth_mm, map.near_mm, to.axes_mm.z);
 }
 
 fn inside(uv: vec2f) -> bool {
@@ -161,17 +163,17 @@ fn inside(uv: vec2f) -> bool {
 }
 
 /// Share of the four texels around a place that do not hide the point.
-fn lit_share(light: Light, to: Receiver, uv: vec2f) -> f32 {
+fn lit_share(map: LightMap, to: Receiver, uv: vec2f) -> f32 {
     let place = uv * vec2f(textureDimensions(depths)) - 0.5;
     let f = fract(place);
     let corner = vec2i(floor(place));
-    let limit_mm = plane_depth_mm(light, to, uv) - to.bias_mm;
-    let upper = mix(lit(light, corner, limit_mm), lit(light, corner + vec2i(1, 0), limit_mm), f.x);
-    let lower = mix(lit(light, corner + vec2i(0, 1), limit_mm), lit(light, corner + vec2i(1, 1), limit_mm), f.x);
+    let limit_mm = plane_depth_mm(map, to, uv) - to.bias_mm;
+    let upper = mix(lit(map, corner, limit_mm), lit(map, corner + vec2i(1, 0), limit_mm), f.x);
+    let lower = mix(lit(map, corner + vec2i(0, 1), limit_mm), lit(map, corner + vec2i(1, 1), limit_mm), f.x);
     return select(1.0, mix(upper, lower, f.y), inside(uv));
 }
 
-fn lit(light: Light, texel: vec2i, limit_mm: f32) -> f32 {
+fn lit(map: LightMap, texel: vec2i, limit_mm: f32) -> f32 {
     let clamped = clamp(texel, vec2i(0), vec2i(textureDimensions(depths)) - 1);
-    return select(0.0, 1.0, textureLoad(depths, clamped, light.map_layer, 0).x >= limit_mm);
+    return select(0.0, 1.0, textureLoad(depths, clamped, map.layer, 0).x >= limit_mm);
 }

@@ -35,11 +35,13 @@ impl GpuCamera {
         let [right, up, forward] = camera.axes();
         let half_height = (0.5 * camera.vertical_fov_rad).tan();
         let [lo, hi] = bounds_mm;
-        let corners = (0..8).map(|i| Vec3::new(
-            if i & 1 == 0 { lo.x } else { hi.x },
-            if i & 2 == 0 { lo.y } else { hi.y },
-            if i & 4 == 0 { lo.z } else { hi.z },
-        ));
+        let corners = (0..8).map(|i| {
+            Vec3::new(
+                if i & 1 == 0 { lo.x } else { hi.x },
+                if i & 2 == 0 { lo.y } else { hi.y },
+                if i & 4 == 0 { lo.z } else { hi.z },
+            )
+        });
         let depths = corners.map(|corner| (corner - camera.position_mm).dot(forward));
         let (near, far) = depths.fold((f32::INFINITY, 0.0f32), |(n, f), d| (n.min(d), f.max(d)));
         // A scene behind the camera is not seen, but the numbers have to be.

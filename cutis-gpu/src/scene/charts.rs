@@ -28,9 +28,8 @@ impl ChartTexture {
     pub fn new(gpu: &Gpu, charts: &ChartMap) -> Self {
         let size = charts.size as u32;
         let texels = charts.chart.iter().zip(&charts.reach_u).zip(&charts.reach_v);
-        let codes = texels.flat_map(|((&chart, &u), &v)| {
-            [chart_code(chart), u.min(MAX_REACH) | v.min(MAX_REACH) << 8]
-        });
+        let codes = texels
+            .flat_map(|((&chart, &u), &v)| [chart_code(chart), u.min(MAX_REACH) | v.min(MAX_REACH) << 8]);
         let bytes: Vec<u8> = codes.flat_map(u16::to_le_bytes).collect();
         let map = Map::filled(gpu, "charts", [size, size], wgpu::TextureFormat::Rg16Uint, &bytes);
         let runs = runs(charts);
@@ -51,9 +50,8 @@ fn runs(charts: &ChartMap) -> Vec<u32> {
     let covered = |column: usize, row: usize| {
         let ys = row * TILE_TEXELS..((row + 1) * TILE_TEXELS).min(charts.size);
         let xs = column * TILE_TEXELS..((column + 1) * TILE_TEXELS).min(charts.size);
-        ys.into_iter().any(|y| {
-            charts.chart[y * charts.size..][xs.clone()].iter().any(|&chart| chart != NO_CHART)
-        })
+        ys.into_iter()
+            .any(|y| charts.chart[y * charts.size..][xs.clone()].iter().any(|&chart| chart != NO_CHART))
     };
     let mut runs = Vec::new();
     for row in 0..tiles {
@@ -73,7 +71,8 @@ fn runs(charts: &ChartMap) -> Vec<u32> {
 pub fn surface_texture(gpu: &Gpu, atlas: &Atlas) -> Map {
     let size = atlas.size as u32;
     let sixteen_bits = |x: f32| (x.clamp(0.0, 1.0) * 65535.0).round() as u32;
-    let words = atlas.surface.iter().flat_map(|s| [s.triangle, sixteen_bits(s.b1) | sixteen_bits(s.b2) << 16]);
+    let words =
+        atlas.surface.iter().flat_map(|s| [s.triangle, sixteen_bits(s.b1) | sixteen_bits(s.b2) << 16]);
     let bytes: Vec<u8> = words.flat_map(u32::to_le_bytes).collect();
     Map::filled(gpu, "surface", [size, size], wgpu::TextureFormat::Rg32Uint, &bytes)
 }

@@ -68,7 +68,8 @@ impl EnvironmentMaps {
         let format = wgpu::TextureFormat::Rgba16Float;
         let numbers = GpuEnvironment { roughnesses: first_roughnesses(), ..GpuEnvironment::zeroed() };
         Self {
-            numbers: gpu.uniform("environment", &GpuEnvironment { last_roughness: ROUGHNESSES[4], ..numbers }),
+            numbers: gpu
+                .uniform("environment", &GpuEnvironment { last_roughness: ROUGHNESSES[4], ..numbers }),
             irradiance: Map::square(gpu, "no irradiance", 1, 1, format),
             reflections: Map::square(gpu, "no reflections", 1, ROUGHNESSES.len() as u32, format),
             sky: None,

@@ -61,7 +61,10 @@ impl MaterialMaps {
             albedo: texture("albedo", material.albedo.texture.as_deref())?,
             relief: texture("relief", relief.map(|map| map.texture.as_ref()))?,
             rho_s: texture("rho_s", material.rho_s.texture.as_ref().map(|(map, _)| map.as_ref()))?,
-            roughness: texture("roughness", material.roughness.texture.as_ref().map(|(map, _)| map.as_ref()))?,
+            roughness: texture(
+                "roughness",
+                material.roughness.texture.as_ref().map(|(map, _)| map.as_ref()),
+            )?,
         })
     }
 }

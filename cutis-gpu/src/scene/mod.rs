@@ -29,6 +29,7 @@ use cutis_scene::{Bvh, Camera, Scene};
 use glam::{Vec3, Vec4};
 use object::{ObjectMaps, ObjectSteps, Prepared};
 use shared::Shared;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Everything that is needed to draw frames of one scene, at one size.
 #[derive(Debug)]
@@ -45,7 +46,12 @@ pub struct GpuScene {
     grid: u32,
     bounds_mm: [Vec3; 2],
     background: wgpu::Color,
+    /// What has to be done when the geometry has changed.
+    surface_steps: Vec<Step>,
+    /// What has to be done in every frame.
     steps: Vec<Step>,
+    /// Whether the geometry has changed since the last frame.
+    changed: AtomicBool,
     timing: Timing,
 }
 
@@ -87,12 +93,14 @@ impl GpuScene {
             objects: Vec::new(),
             bounds_mm: scene.bounds_mm().unwrap_or([Vec3::ZERO; 2]),
             background: background(scene),
+            surface_steps: Vec::new(),
             steps: Vec::new(),
+            changed: AtomicBool::new(true),
             timing: Timing::new(gpu, 0),
         };
         let steps = this.add_objects(gpu, passes, scene, settings, progress)?;
         this.add_steps(gpu, passes, steps);
-        this.timing = Timing::new(gpu, this.steps.len());
+        this.timing = Timing::new(gpu, this.surface_steps.len() + this.steps.len());
         Ok(this)
     }
 
@@ -126,7 +134,7 @@ impl GpuScene {
     fn add_steps(&mut self, gpu: &Gpu, passes: &Passes, objects: Vec<ObjectSteps>) {
         let mut after = Vec::new();
         for steps in objects {
-            self.steps.extend(steps.surface);
+            self.surface_steps.extend(steps.surface);
             after.extend(steps.light);
         }
         for (light, layer) in (0..).zip(&self.shared.layers) {
@@ -147,7 +155,12 @@ impl GpuScene {
         if let Some(sky) = sky {
             let samples = &self.samples;
             self.steps.push(passes.resolve.sky_step(
-                gpu, &passes.samplers, camera, environment, sky, samples,
+                gpu,
+                &passes.samplers,
+                camera,
+                environment,
+                sky,
+                samples,
             ));
         }
         for (i, maps) in self.objects.iter().enumerate() {
@@ -172,10 +185,16 @@ impl GpuScene {
         gpu.queue.write_buffer(&self.shared.camera, 0, bytemuck::bytes_of(&numbers));
     }
 
+    /// The steps of the next frame.
+    fn due(&self) -> impl Iterator<Item = &Step> {
+        let changed = self.changed.swap(false, Ordering::Relaxed);
+        self.surface_steps.iter().filter(move |_| changed).chain(&self.steps)
+    }
+
     /// Draws a frame, without waiting for it.
     pub fn draw(&self, gpu: &Gpu) {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        self.steps.iter().for_each(|step| step.encode(&mut encoder, None));
+        self.due().for_each(|step| step.encode(&mut encoder, None));
         gpu.queue.submit([encoder.finish()]);
     }
 
@@ -184,7 +203,7 @@ impl GpuScene {
     /// # Errors
     /// If the device is lost.
     pub fn draw_timed(&self, gpu: &Gpu) -> Result<Vec<PassTime>, GpuError> {
-        self.timing.run(gpu, &self.steps)
+        self.timing.run(gpu, self.due())
     }
 
     /// The picture that was drawn last.

@@ -76,12 +76,12 @@ pub struct ObjectMaps {
     rho_dt: Map,
 }
 
-/// Steps of one object, by what has to be done before them.
+/// Steps of one object.
 #[derive(Debug, Default)]
 pub struct ObjectSteps {
-    /// Before the lights' maps.
+    /// When the geometry has changed.
     pub surface: Vec<Step>,
-    /// After them.
+    /// In every frame, after the lights' maps.
     pub light: Vec<Step>,
 }
 
@@ -102,6 +102,7 @@ impl ObjectMaps {
         let Prepared { atlas: unrolled, texel_mm, kernel, rho_dt } = prepared;
         let size = unrolled.size as u32;
         let plan = plan(unrolled.size, texel_mm, &kernel.variances_mm2);
+        tracing::debug!("plan of '{}' with texels of {texel_mm} mm: {plan:?}", object.name);
         let charts = chart_textures(gpu, &unrolled, &plan);
         let geometry = Geometry::new(gpu, object)?;
         let material = MaterialMaps::new(gpu, &object.material)?;
@@ -110,9 +111,9 @@ impl ObjectMaps {
         let mut steps = ObjectSteps::default();
         steps.surface.push(passes.stretch.step(gpu, &geometry));
         let samplers = &passes.samplers;
-        steps.surface.push(passes.atlas.step(
-            gpu, samplers, &geometry, &material, &surface, &charts[0], &atlas,
-        ));
+        steps
+            .surface
+            .push(passes.atlas.step(gpu, samplers, &geometry, &material, &surface, &charts[0], &atlas));
         let mut maps = Self {
             visibility: visibility_map(gpu, size, shared.light_count),
             local: Map::square(gpu, "local", size, 1, Format::Rgba16Float),
@@ -127,8 +128,7 @@ impl ObjectMaps {
             material,
         };
         let light = Lighting { gpu, passes, shared, number, maps: &maps };
-        let shares = light.steps(&plan, &mut steps.light);
-        let Lit { levels, shares } = shares;
+        let Lit { levels, shares } = light.steps(&plan, &mut steps);
         maps.levels = levels;
         steps.light.extend(passes.gather.steps(gpu, &maps.kernel, &maps.levels, maps.local.view()));
         let inputs = TransmissionInputs {
@@ -143,8 +143,7 @@ impl ObjectMaps {
         };
         let spare = Map::square(gpu, "transmission", size / 2, 1, Format::Rgba16Float);
         let both = [maps.transmission.clone(), spare];
-        let (more, result) =
-            passes.transmission.steps(gpu, &inputs, &smoothing_steps(2.0 * texel_mm), both);
+        let (more, result) = passes.transmission.steps(gpu, &inputs, &smoothing_steps(2.0 * texel_mm), both);
         steps.light.extend(more);
         maps.transmission = result;
         Ok((maps, steps))
@@ -190,7 +189,8 @@ struct Lit {
 }
 
 impl Lighting<'_> {
-    fn steps(&self, plan: &[Action], steps: &mut Vec<Step>) -> Lit {
+    fn steps(&self, plan: &[Action], all: &mut ObjectSteps) -> Lit {
+        let steps = &mut all.light;
         let Self { gpu, passes, shared, maps, .. } = *self;
         let size = maps.charts[0].size;
         let groups = shared.light_count.div_ceil(LIGHTS_TOGETHER) as u32;
@@ -225,10 +225,11 @@ impl Lighting<'_> {
             }));
             shares
         });
-        let (blurs, levels) =
-            passes.diffusion.steps(gpu, &maps.charts, &light, &maps.atlas.stretch, plan);
-        steps.extend(blurs);
-        Lit { levels, shares }
+        let stretch = &maps.atlas.stretch;
+        let diffusion = passes.diffusion.steps(gpu, &maps.charts, &light, stretch, plan);
+        steps.extend(diffusion.blurs);
+        all.surface.extend(diffusion.taps);
+        Lit { levels: diffusion.levels, shares }
     }
 
     fn visibility(&self, group: u32, distances: &wgpu::TextureView) -> Step {

@@ -49,8 +49,7 @@ impl Shared {
         filtered: Option<&FilteredEnvironment>,
     ) -> Result<Self, GpuError> {
         let lights = gpu_lights(scene);
-        let layers: Vec<_> =
-            lights.iter().map(|l| (l.map_layer != NO_MAP).then_some(l.map_layer)).collect();
+        let layers: Vec<_> = lights.iter().map(|l| (l.map_layer != NO_MAP).then_some(l.map_layer)).collect();
         let [smallest, largest] = SHADOW_SIZES;
         let size = settings.irradiance_size.clamp(smallest, largest);
         let aspect = settings.width as f32 / settings.height as f32;

@@ -2,6 +2,9 @@
 
 struct LightFacing {
     found: bool,
+    /// Whether the map shows nothing nearer to the light than the point: it lies at a silhouette, and what the texel holds is
+    /// behind it.
+    itself: bool,
     uv: vec2f,
     chart: u32,
     /// Distance m through the body towards the light, mm.
@@ -18,7 +21,7 @@ fn light_facing_surface(
     point_mm: vec3f,
     object: u32,
 ) -> LightFacing {
-    var there = LightFacing(false, vec2f(0.0), 0u, 0.0, 0.0);
+    var there = LightFacing(false, false, vec2f(0.0), 0u, 0.0, 0.0);
     if map.layer == NO_MAP {
         return there;
     }
@@ -36,6 +39,7 @@ fn light_facing_surface(
     // What is along the ray for a millimetre of the map's depth.
     let ray_mm_per_depth_mm = select(length(axes_mm) / axes_mm.z, 1.0, map.directional);
     there.found = true;
+    there.itself = depth_mm >= axes_mm.z;
     there.uncertain_mm = 1.42 * map_half_width_mm(map, depth_mm) / size.x;
     there.uv = unpack2x16unorm(surface.x);
     there.chart = surface.y & 65535u;

@@ -83,15 +83,13 @@ impl AtlasPass {
         Self { pipeline: Pipeline::new(gpu, &blueprint) }
     }
 
-    /// Fills the maps.
+    /// Fills the maps from the triangle under every texel.
     pub fn step(
         &self,
         gpu: &Gpu,
         samplers: &Samplers,
-        geometry: &Geometry,
-        material: &MaterialMaps,
-        surface: &Map,
-        charts: &ChartTexture,
+        (geometry, material): (&Geometry, &MaterialMaps),
+        (surface, charts): (&Map, &ChartTexture),
         maps: &AtlasMaps,
     ) -> Step {
         let bound = [

@@ -51,7 +51,7 @@ fn transmit(@builtin(position) position: vec4f) -> @location(0) vec4f {
         if through > VISIBLE && dot(normal, towards.dir_to_light) < 0.0 {
             let there = light_facing_surface(map_of(l), depths, surfaces, point_mm, slab.object);
             let apart_mm = apart_mm(uv, normal, chart, there) - uncertain_mm(there, towards.dir_to_light);
-            let faded = select(0.0, through * fade_out(max(apart_mm, 0.0)), there.found);
+            let faded = select(0.0, through * fade_out(max(apart_mm, 0.0)), there.found && !there.itself);
             sum += light_at(there) * (faded * share(l, there));
         }
     }

@@ -60,9 +60,8 @@ impl VisibilityPass {
         &self,
         gpu: &Gpu,
         group: Group,
-        lights: &wgpu::Buffer,
+        (lights, shadows): (&wgpu::Buffer, &ShadowMaps),
         atlas: &AtlasMaps,
-        shadows: &ShadowMaps,
         charts: &ChartTexture,
         targets: [&wgpu::TextureView; 2],
     ) -> Step {

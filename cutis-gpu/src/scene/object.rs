@@ -111,9 +111,13 @@ impl ObjectMaps {
         let mut steps = ObjectSteps::default();
         steps.surface.push(passes.stretch.step(gpu, &geometry));
         let samplers = &passes.samplers;
-        steps
-            .surface
-            .push(passes.atlas.step(gpu, samplers, &geometry, &material, &surface, &charts[0], &atlas));
+        steps.surface.push(passes.atlas.step(
+            gpu,
+            samplers,
+            (&geometry, &material),
+            (&surface, &charts[0]),
+            &atlas,
+        ));
         let mut maps = Self {
             visibility: visibility_map(gpu, size, shared.light_count),
             local: Map::square(gpu, "local", size, 1, Format::Rgba16Float),
@@ -247,9 +251,8 @@ impl Lighting<'_> {
         passes.visibility.step(
             gpu,
             numbers,
-            &shared.lights,
+            (&shared.lights, &shared.shadows),
             &maps.atlas,
-            &shared.shadows,
             &maps.charts[0],
             targets,
         )

@@ -117,7 +117,7 @@ pub fn difference(got: &[Vec4], expected: &[Vec4], counts: impl Fn(usize) -> boo
     let mean =
         texels.iter().map(|&i| rgb(expected[i]).abs().element_sum() / 3.0).sum::<f32>() / texels.len() as f32;
     let off = |i: usize| (rgb(got[i]) - rgb(expected[i])).abs().element_sum() / 3.0;
-    let far = texels.iter().filter(|&&i| !(off(i) <= 0.1 * mean)).count();
+    let far = texels.iter().filter(|&&i| off(i) > 0.1 * mean || off(i).is_nan()).count();
     let sum = texels.iter().map(|&i| off(i)).sum::<f32>();
     Difference { mean: sum / texels.len() as f32 / mean, far: far as f32 / texels.len() as f32 }
 }

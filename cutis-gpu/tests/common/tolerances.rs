@@ -34,12 +34,13 @@ pub const DISTANCE: Tolerance = tolerance(0.085, 0.1);
 pub const LEVELS: Tolerance = tolerance(0.01, 0.007);
 /// Sum of the Gaussians, from the same light.
 pub const LOCAL: Tolerance = tolerance(0.006, 1e-3);
-/// Light through the head.
-pub const TRANSMISSION: Tolerance = tolerance(0.25, 0.1);
+/// Light through the head. Little comes through: most of the difference lies along the edges of shadows, where the maps
+/// cannot tell how thin a body is.
+pub const TRANSMISSION: Tolerance = tolerance(0.9, 0.13);
 /// Normals and colours of a whole picture.
-pub const SURFACE: Tolerance = tolerance(0.01, 0.01);
+pub const SURFACE: Tolerance = tolerance(0.025, 0.012);
 /// Light that has been inside, in a whole picture.
-pub const DIFFUSE: Tolerance = tolerance(0.017, 0.028);
+pub const DIFFUSE: Tolerance = tolerance(0.018, 0.019);
 /// Pictures of patches, which nothing hides.
 pub const PATCH: Tolerance = tolerance(0.007, 1e-3);
 /// Picture of the built-in head.
@@ -54,7 +55,7 @@ pub const ONE_LIT_TEXEL: f64 = 0.006;
 pub const ENERGY: f64 = 0.005;
 /// Shine in a whole picture: silhouettes are a hundred times as bright as the rest, and a jittered sample more or less at
 /// them counts as much as many pixels.
-pub const SHINE: Tolerance = tolerance(0.21, 0.045);
+pub const SHINE: Tolerance = tolerance(0.21, 0.13);
 /// Constants after every blur. llvmpipe cuts 16-bit floats off instead of rounding them: up to 1/2048 in each of 13 passes,
 /// of which it is half on the mean.
 pub const CONSTANT: f32 = 4e-3;

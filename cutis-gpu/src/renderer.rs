@@ -68,6 +68,9 @@ impl GpuRenderer {
         let reading = PassTime { name: "read back".to_owned(), time: start.elapsed() };
         let mut told = warnings(scene);
         told.extend(ready.shared.warnings.iter().cloned());
+        if settings.diffusion_report {
+            told.push("the report on the diffusion is made by the processor only: --backend cpu".to_owned());
+        }
         Ok(Frame {
             width: settings.width,
             height: settings.height,

@@ -168,8 +168,8 @@ fn constant_light_stays_constant_in_every_chart() {
     let atlas = Atlas::new(object, SIZE);
     let light: Vec<_> =
         covered(&atlas.charts).map(|c| if c { Vec4::splat(2.0) } else { Vec4::ZERO }).collect();
-    let variances: Vec<f32> = three_layer_skin(0).iter().map(|t| t.1 as f32).collect();
-    let diffused = diffuse_on_gpu(renderer, object, &atlas, &variances, &light);
+    let diffused = diffuse_on_gpu(renderer, object, &atlas, &wide_variances(), &light);
+    assert!(diffused.levels.iter().any(|level| level.charts.size < SIZE), "something is halved");
     for (i, level) in diffused.levels.iter().enumerate() {
         for (texel, value) in level.layers[0].iter().enumerate() {
             let inside = level.charts.chart[texel] != NO_CHART;
@@ -179,6 +179,11 @@ fn constant_light_stays_constant_in_every_chart() {
             );
         }
     }
+}
+
+/// Those of skin and one so wide that it lives in a smaller texture.
+fn wide_variances() -> Vec<f32> {
+    three_layer_skin(0).iter().map(|t| t.1 as f32).chain([40.0]).collect()
 }
 
 fn covered(charts: &ChartMap) -> impl Iterator<Item = bool> + '_ {
@@ -197,7 +202,7 @@ fn every_level_is_that_of_the_processor() {
         .enumerate()
         .map(|(i, c)| if c { Vec4::splat(stripes(i)) } else { Vec4::ZERO })
         .collect();
-    let variances: Vec<f32> = three_layer_skin(0).iter().map(|t| t.1 as f32).collect();
+    let variances = wide_variances();
     let got = diffuse_on_gpu(renderer, object, &atlas, &variances, &light);
     let fields = Fields::new(vec![light], stretch_mm_per_texel(object, &atlas));
     let wanted = Separable.diffuse(Arc::clone(&atlas.charts), fields, &variances, &Silent);

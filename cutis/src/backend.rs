@@ -21,14 +21,25 @@ impl Backend {
     /// All of them, in the order in which they are listed.
     pub const ALL: [Backend; 3] = [Backend::Auto, Backend::Cpu, Backend::Gpu];
 
+    /// Refuses what can be told before any work.
+    ///
+    /// # Errors
+    /// If the GPU is asked for a technique that it does not know.
+    pub fn check(self, technique: TechniqueName) -> Result<()> {
+        if self == Backend::Gpu && !GpuRenderer::knows(technique) {
+            return Err(miette!(help = "leave --backend out, or say cpu", "{}", unknown(technique)));
+        }
+        Ok(())
+    }
+
     /// The renderer for a technique.
     ///
     /// # Errors
-    /// If the GPU is asked for, and there is none or it does not know the technique.
+    /// If the GPU is asked for and there is none.
     pub fn renderer(self, technique: TechniqueName) -> Result<Box<dyn Renderer>> {
         match self {
             Backend::Cpu => Ok(Box::new(CpuRenderer)),
-            Backend::Gpu => Ok(Box::new(on_any_adapter(technique)?)),
+            Backend::Gpu => Ok(Box::new(on_any_adapter()?)),
             Backend::Auto => Ok(on_hardware(technique).unwrap_or_else(|why| {
                 talk::tell(&format!("backend auto: the processor, because {why}"));
                 Box::new(CpuRenderer)
@@ -56,10 +67,7 @@ fn on_hardware(technique: TechniqueName) -> std::result::Result<Box<dyn Renderer
     Ok(Box::new(renderer))
 }
 
-fn on_any_adapter(technique: TechniqueName) -> Result<GpuRenderer> {
-    if !GpuRenderer::knows(technique) {
-        return Err(miette!(help = "leave --backend out, or say cpu", "{}", unknown(technique)));
-    }
+fn on_any_adapter() -> Result<GpuRenderer> {
     GpuRenderer::new(Adapters::Any)
         .map_err(|error| miette!(help = "leave --backend out, or say cpu", "{error}"))
 }

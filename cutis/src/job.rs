@@ -39,6 +39,7 @@ impl Job {
     pub fn new(args: &RenderArgs) -> Result<Self> {
         let backend = named("--backend", &args.backend, Backend::ALL.map(|b| (b.to_string(), b)))?;
         let settings = settings(args)?;
+        backend.check(settings.technique)?;
         let film = film(args)?;
         let threads = threads_in_range(args.threads)?;
         let source = source(args)?;

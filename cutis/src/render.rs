@@ -18,10 +18,9 @@ pub fn run(args: &RenderArgs, verbose: u8) -> Result<Outcome> {
     let start = Instant::now();
     let job = Job::new(args)?;
     choose_threads(job.threads)?;
+    let (scene, reading) = timed("read", || job.source.load().map_err(|error| miette!("{error}")))?;
     let renderer = job.backend.renderer(job.settings.technique)?;
     tracing::info!("backend {}, {}", renderer.backend(), renderer.adapter());
-
-    let (scene, reading) = timed("read", || job.source.load().map_err(|error| miette!("{error}")))?;
     let frame = draw(renderer.as_ref(), &scene, &job, verbose)?;
     let film = Film { exposure_ev: job.film.exposure_ev + scene.camera.exposure_ev, ..job.film };
     let (written, writing) = timed("write", || {

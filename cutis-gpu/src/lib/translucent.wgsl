@@ -33,13 +33,10 @@ fn light_facing_surface(
     }
     let depth_mm = textureLoad(depths, texel, map.layer, 0).x;
     let surface = textureLoad(surfaces, texel, map.layer, 0).xy;
-    if depth_mm >= map.far_mm || (surface.y >> 16u) != object {
-        return there;
-    }
+    there.itself = depth_mm >= axes_mm.z;
+    there.found = there.itself || (surface.y >> 16u) == object;
     // What is along the ray for a millimetre of the map's depth.
     let ray_mm_per_depth_mm = select(length(axes_mm) / axes_mm.z, 1.0, map.directional);
-    there.found = true;
-    there.itself = depth_mm >= axes_mm.z;
     there.uncertain_mm = 1.42 * map_half_width_mm(map, depth_mm) / size.x;
     there.uv = unpack2x16unorm(surface.x);
     there.chart = surface.y & 65535u;

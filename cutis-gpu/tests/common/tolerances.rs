@@ -28,10 +28,10 @@ pub const STRETCH: Tolerance = tolerance(6e-4, 1e-4);
 pub const IRRADIANCE: Tolerance = tolerance(6e-4, 1e-4);
 /// Fraction of sharp lights that is seen, on the head.
 pub const VISIBILITY: Tolerance = tolerance(0.022, 0.017);
-/// Distance through the head.
-pub const DISTANCE: Tolerance = tolerance(0.085, 0.1);
+/// Distance through a ball.
+pub const DISTANCE: Tolerance = tolerance(0.05, 0.065);
 /// Every level of the diffusion, from the same light.
-pub const LEVELS: Tolerance = tolerance(0.01, 0.007);
+pub const LEVELS: Tolerance = tolerance(0.024, 0.06);
 /// Sum of the Gaussians, from the same light.
 pub const LOCAL: Tolerance = tolerance(0.006, 1e-3);
 /// Light through the head. Little comes through: most of the difference lies along the edges of shadows, where the maps

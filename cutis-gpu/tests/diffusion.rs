@@ -197,7 +197,7 @@ fn every_level_is_that_of_the_processor() {
     let object = &scene.objects[0];
     let atlas = Atlas::new(object, SIZE);
     // Stripes with sharp edges, as shadows have them.
-    let stripes = |i: usize| if (i % SIZE / 24 + i / SIZE / 40) % 2 == 0 { 1.0 } else { 0.1 };
+    let stripes = |i: usize| if (i % SIZE / 24 + i / SIZE / 40).is_multiple_of(2) { 1.0 } else { 0.1 };
     let light: Vec<_> = covered(&atlas.charts)
         .enumerate()
         .map(|(i, c)| if c { Vec4::splat(stripes(i)) } else { Vec4::ZERO })

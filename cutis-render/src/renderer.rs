@@ -26,6 +26,12 @@ pub enum RenderError {
         /// What is wrong, with the file's name.
         reason: String,
     },
+    /// The machine that was to draw it cannot.
+    #[error("{reason}")]
+    Backend {
+        /// What stands in the way.
+        reason: String,
+    },
     /// A body has no inside.
     #[error("object '{object}': {reason}")]
     BadBody {

@@ -6,6 +6,7 @@ mod diff;
 mod profile;
 mod validate;
 
+use crate::backend::Backend;
 use crate::talk;
 use clap::builder::PossibleValuesParser;
 use clap::error::ErrorKind;
@@ -74,8 +75,9 @@ pub struct RenderArgs {
     /// How light spreads under the surface; none: the surface is opaque
     #[arg(long, value_name = "NAME", default_value_t = Settings::default().diffusion.to_string(), value_parser = names(DIFFUSIONS))]
     pub diffusion: String,
-    /// Where it is computed; auto: the best there is
-    #[arg(long, value_name = "NAME", default_value = "auto", value_parser = names(["auto", "cpu", "gpu"]))]
+    /// Where it is computed; auto: on a graphics processor if there is one, else on the processor; gpu: on any graphics
+    /// adapter, also a program that stands in for one
+    #[arg(long, value_name = "NAME", default_value_t = Backend::Auto.to_string(), value_parser = names(Backend::ALL))]
     pub backend: String,
     /// Width and height of the picture [pixels, 1x1 to 16384x16384]
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value_t = default_size())]

@@ -1,5 +1,6 @@
 //! A run that can begin: every value of the command line checked, every file that must be there looked for.
 
+use crate::backend::Backend;
 use crate::cli::{AOV_SPACES, DIFFUSIONS, RenderArgs};
 use crate::scene_source::SceneSource;
 use cutis_render::film::{Bloom, Checkpoint, Film, Format, check_output, layer_path};
@@ -13,6 +14,8 @@ use std::path::{Path, PathBuf};
 /// Everything `cutis render` needs to know.
 #[derive(Debug, Clone)]
 pub struct Job {
+    /// Where it is computed.
+    pub backend: Backend,
     /// What is rendered.
     pub source: SceneSource,
     /// How it is rendered.
@@ -34,28 +37,16 @@ pub struct Job {
 impl Job {
     /// Checks the arguments.
     pub fn new(args: &RenderArgs) -> Result<Self> {
-        check_backend(&args.backend)?;
+        let backend = named("--backend", &args.backend, Backend::ALL.map(|b| (b.to_string(), b)))?;
         let settings = settings(args)?;
+        backend.check(settings.technique)?;
         let film = film(args)?;
         let threads = threads_in_range(args.threads)?;
         let source = source(args)?;
         let format = check_outputs(args, &settings)?;
         let (output, json, warnings) = (args.output.clone(), args.json, idle_wishes(args, format));
-        Ok(Self { source, settings, film, output, format, threads, json, warnings })
+        Ok(Self { backend, source, settings, film, output, format, threads, json, warnings })
     }
-}
-
-fn check_backend(name: &str) -> Result<()> {
-    if name == "gpu" {
-        return Err(miette!(
-            help = "leave --backend out, or say cpu",
-            "this build of cutis has no GPU backend"
-        ));
-    }
-    if name == "auto" {
-        tracing::info!("backend auto: the processor, this build has no other");
-    }
-    Ok(())
 }
 
 fn settings(args: &RenderArgs) -> Result<Settings> {

@@ -4,6 +4,7 @@
 //! scene, draws it, develops the film, writes the files and says where they are. Results go to stdout, talk to
 //! stderr. Exit code 0: done; 1: finished, but a check failed; 2: could not run.
 
+mod backend;
 mod cli;
 mod compare;
 mod completions;

@@ -8,7 +8,7 @@ use crate::report::Report;
 use crate::{Outcome, talk};
 use cutis_render::film::{self, Film, Written};
 use cutis_render::passes::seams::DiffusionReport;
-use cutis_render::{Aov, CpuRenderer, Frame, PassTime, Renderer};
+use cutis_render::{Aov, Frame, PassTime, Renderer};
 use cutis_scene::Scene;
 use miette::{IntoDiagnostic, Result, miette};
 use std::time::Instant;
@@ -18,11 +18,10 @@ pub fn run(args: &RenderArgs, verbose: u8) -> Result<Outcome> {
     let start = Instant::now();
     let job = Job::new(args)?;
     choose_threads(job.threads)?;
-    let renderer = CpuRenderer;
-    tracing::info!("backend {}, {}", renderer.backend(), renderer.adapter());
-
     let (scene, reading) = timed("read", || job.source.load().map_err(|error| miette!("{error}")))?;
-    let frame = draw(&renderer, &scene, &job, verbose)?;
+    let renderer = job.backend.renderer(job.settings.technique, &scene)?;
+    tracing::info!("backend {}, {}", renderer.backend(), renderer.adapter());
+    let frame = draw(renderer.as_ref(), &scene, &job, verbose)?;
     let film = Film { exposure_ev: job.film.exposure_ev + scene.camera.exposure_ev, ..job.film };
     let (written, writing) = timed("write", || {
         film::write(&job.output, job.format, &frame, &film).map_err(|error| miette!("{error}"))
@@ -33,7 +32,7 @@ pub fn run(args: &RenderArgs, verbose: u8) -> Result<Outcome> {
     if job.json {
         let report = Report::new(
             &job,
-            &renderer,
+            renderer.as_ref(),
             &written,
             &frame.diffusion_reports,
             &passes,

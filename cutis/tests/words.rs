@@ -52,7 +52,10 @@ fn nonsense_ends_with_code_2_and_one_clear_line() {
         (&["--bloom", "NaN"], "bloom must be 0 to 1, got NaN"),
         (&["--tone-mapper", "filmic"], "none, reinhard, aces, agx, neutral"),
         (&["--aov", "depth"], "irradiance"),
-        (&["--backend", "gpu"], "no GPU backend"),
+        (
+            &["--backend", "gpu", "--technique", "truth"],
+            "the technique truth is not drawn on graphics adapters",
+        ),
         (&["--threads", "0"], "--threads must be 1 to 1024, got 0"),
         (&["--triangles", "7"], "--triangles must be 1000 to 4000000, got 7"),
         (&["--millimetres-per-unit", "0"], "above 0 mm, got 0"),

@@ -50,6 +50,22 @@ impl Ambient {
         Self { charts, map }
     }
 
+    /// Open to all sides everywhere: what nobody asks for need not be found out.
+    pub fn open(charts: ChartMap) -> Self {
+        let map = vec![Vec4::W; charts.chart.len()];
+        Self { charts, map }
+    }
+
+    /// Charts of the map, a quarter as wide as the atlas.
+    pub fn charts(&self) -> &ChartMap {
+        &self.charts
+    }
+
+    /// Bent normal in xyz, unoccluded fraction of the hemisphere in w, texel by texel.
+    pub fn map(&self) -> &[Vec4] {
+        &self.map
+    }
+
     /// Bent normal and openness at `uv`; open to all sides where the chart has no texel.
     pub fn at(&self, uv: Vec2, chart: u32, normal: Vec3) -> (Vec3, f32) {
         match self.charts.sample(&self.map, uv, chart) {

@@ -97,30 +97,60 @@ impl DiffusionOperator for Separable {
         progress: &dyn Progress,
     ) -> Diffused {
         progress.begin("blur", variances_mm2.len() as u64);
+        let texel_mm = median_texel_mm(&charts, &fields.stretch_mm);
+        let actions = plan(charts.size, texel_mm, variances_mm2);
         let mut state = State::new(charts, fields);
         let mut levels = vec![state.level()];
-        let mut reached_mm2 = 0.0;
-        for &variance_mm2 in variances_mm2 {
-            while state.can_be_halved_for(variance_mm2) {
-                state.halve();
+        for action in actions {
+            match action {
+                Action::Halve => state.halve(),
+                Action::Step(widening) => state.step(widening),
+                Action::Keep => {
+                    levels.push(state.level());
+                    progress.advance(1);
+                }
             }
-            while reached_mm2 < variance_mm2 {
-                let to_mm2 = state.next_step_mm2(reached_mm2, variance_mm2);
-                state.step(reached_mm2, to_mm2);
-                reached_mm2 = to_mm2;
-            }
-            levels.push(state.level());
-            progress.advance(1);
         }
         Diffused { levels }
     }
 }
 
-/// Fields on their way through the levels.
-struct State {
-    charts: Arc<ChartMap>,
-    fields: Fields,
-    scratch: Fields,
+/// One thing that is done on the way from irradiance to the widest Gaussian.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Action {
+    /// Everything moves on to textures of half the size.
+    Halve,
+    /// A blur along u, then along v.
+    Step(Widening),
+    /// What there is now is the level of the next Gaussian.
+    Keep,
+}
+
+/// How [`Separable`] gets to every variance (growing, mm²) from a map of `size` texels, most of them `texel_mm` wide.
+pub fn plan(size: usize, texel_mm: f32, variances_mm2: &[f32]) -> Vec<Action> {
+    let mut way = Way { size, texel_mm, saved_texel2: 0.0, left_to_read_texel2: 0.0 };
+    let mut actions = Vec::new();
+    let mut reached_mm2 = 0.0;
+    for &variance_mm2 in variances_mm2 {
+        while way.can_be_halved_for(variance_mm2) {
+            way.halve();
+            actions.push(Action::Halve);
+        }
+        while reached_mm2 < variance_mm2 {
+            let to_mm2 = way.next_step_mm2(reached_mm2, variance_mm2);
+            let saved_texel2 = std::mem::take(&mut way.saved_texel2);
+            actions.push(Action::Step(Widening { from_mm2: reached_mm2, to_mm2, saved_texel2 }));
+            reached_mm2 = to_mm2;
+        }
+        actions.push(Action::Keep);
+    }
+    actions
+}
+
+/// Where a plan has got to.
+struct Way {
+    /// Width and height of the textures, texels.
+    size: usize,
     /// Texel size that half of the surface falls below, mm.
     texel_mm: f32,
     /// Variance the next step leaves out, texel².
@@ -129,27 +159,14 @@ struct State {
     left_to_read_texel2: f32,
 }
 
-impl State {
-    fn new(charts: Arc<ChartMap>, fields: Fields) -> Self {
-        let scratch = fields.zeros_like();
-        let texel_mm = median_texel_mm(&charts, &fields.stretch_mm);
-        Self { charts, fields, scratch, texel_mm, saved_texel2: 0.0, left_to_read_texel2: 0.0 }
-    }
-
-    fn level(&self) -> Level {
-        Level { charts: Arc::clone(&self.charts), layers: Arc::clone(&self.fields.layers) }
-    }
-
+impl Way {
     fn can_be_halved_for(&self, variance_mm2: f32) -> bool {
-        let halves = self.charts.size.is_multiple_of(2) && self.charts.size / 2 >= MIN_SIZE;
+        let halves = self.size.is_multiple_of(2) && self.size / 2 >= MIN_SIZE;
         halves && variance_mm2.sqrt() >= COARSE_DEVIATION_TEXELS * 2.0 * self.texel_mm
     }
 
     fn halve(&mut self) {
-        let coarse = self.charts.halved();
-        self.fields = halved_fields(&self.charts, &coarse, &self.fields);
-        self.scratch = self.fields.zeros_like();
-        self.charts = Arc::new(coarse);
+        self.size /= 2;
         self.texel_mm *= 2.0;
         // A quarter of each amount, because a texel² is now four times as large.
         self.saved_texel2 =
@@ -165,12 +182,35 @@ impl State {
         let most_mm2 = (ratio * reached_mm2).max(reached_mm2 + FIRST_STEP_TEXEL2 * texel2_mm2);
         if wanted_mm2 <= 1.02 * most_mm2 { wanted_mm2 } else { most_mm2 }
     }
+}
 
-    fn step(&mut self, from_mm2: f32, to_mm2: f32) {
-        let widening = Widening { from_mm2, to_mm2, saved_texel2: self.saved_texel2 };
+/// Fields on their way through the levels.
+struct State {
+    charts: Arc<ChartMap>,
+    fields: Fields,
+    scratch: Fields,
+}
+
+impl State {
+    fn new(charts: Arc<ChartMap>, fields: Fields) -> Self {
+        let scratch = fields.zeros_like();
+        Self { charts, fields, scratch }
+    }
+
+    fn level(&self) -> Level {
+        Level { charts: Arc::clone(&self.charts), layers: Arc::clone(&self.fields.layers) }
+    }
+
+    fn halve(&mut self) {
+        let coarse = self.charts.halved();
+        self.fields = halved_fields(&self.charts, &coarse, &self.fields);
+        self.scratch = self.fields.zeros_like();
+        self.charts = Arc::new(coarse);
+    }
+
+    fn step(&mut self, widening: Widening) {
         blur(&self.charts, Axis::U, widening, &self.fields, &mut self.scratch);
         blur(&self.charts, Axis::V, widening, &self.scratch, &mut self.fields);
-        self.saved_texel2 = 0.0;
     }
 }
 
@@ -191,7 +231,7 @@ pub fn median_texel_mm(charts: &ChartMap, stretch_mm: &[Vec2]) -> f32 {
 }
 
 /// The mean over the texels of the same chart; the stretch counts for coarse texels.
-fn halved_fields(fine: &ChartMap, coarse: &ChartMap, fields: &Fields) -> Fields {
+pub fn halved_fields(fine: &ChartMap, coarse: &ChartMap, fields: &Fields) -> Fields {
     let layers = fields.layers.iter().map(|layer| halved(fine, coarse, layer, Vec4::ZERO)).collect();
     let mut stretch_mm = halved(fine, coarse, &fields.stretch_mm, Vec2::ZERO);
     stretch_mm.par_iter_mut().for_each(|s| *s *= 2.0);

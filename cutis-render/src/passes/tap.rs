@@ -21,21 +21,24 @@ const SPACINGS: usize = 4096;
 /// Entries of the table of discrete variances, over variances from 0 to [`NARROW_TEXEL2`].
 const VARIANCES: usize = 512;
 /// Variance in texel² up to which seven cells hold the Gaussian: 1 in 600 of its energy lies beyond them.
-const WIDEST_CELLS_TEXEL2: f64 = 1.25;
+pub const WIDEST_CELLS_TEXEL2: f64 = 1.25;
 /// Variance in texel² above which the discrete variance is v + 1/12 to 1e-6: its error falls as exp(-2 pi² v).
-const NARROW_TEXEL2: f64 = 1.0;
+pub const NARROW_TEXEL2: f64 = 1.0;
 
 /// The kernel's weights and the tables that set its spacing.
 pub struct Taps {
     /// Weight of the centre, then of the taps at one, two and three spacings on either side.
     pub weights: [f32; 4],
-    spacing: Vec<f32>,
-    max_deviation: f32,
-    narrow: Vec<f32>,
-    /// Weights on neighbouring texels for variances up to [`WIDEST_CELLS_TEXEL2`].
-    cells: Vec<[f32; 4]>,
-    /// Variance of the weights at spacing 1.
-    unit_variance: f32,
+    /// Spacing in texels by the standard deviation wanted, from 0 to `max_deviation` evenly.
+    pub spacing: Vec<f32>,
+    /// Standard deviation at the widest spacing, texels.
+    pub max_deviation: f32,
+    /// Discrete variance in texel² by the variance, from 0 to [`NARROW_TEXEL2`] evenly.
+    pub narrow: Vec<f32>,
+    /// Weights on neighbouring texels for variances from 0 to [`WIDEST_CELLS_TEXEL2`] evenly.
+    pub cells: Vec<[f32; 4]>,
+    /// Variance of the weights at spacing 1, texel².
+    pub unit_variance: f32,
 }
 
 /// The one kernel of this crate.

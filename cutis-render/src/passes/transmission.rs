@@ -24,13 +24,13 @@ use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
 /// Distance in the surface, in standard deviations of a Gaussian, below which it begins to fade (paper, section 5.2).
-const FADE_DEVIATIONS: f32 = 6.0;
+pub const FADE_DEVIATIONS: f32 = 6.0;
 
 /// Below a millionth of the light nothing shows, and a look-up can be saved.
-const VISIBLE: f32 = 1e-6;
+pub const VISIBLE: f32 = 1e-6;
 
 /// Binomial weights: a standard deviation of one step.
-const BINOMIAL: [f32; 3] = [6.0, 4.0, 1.0];
+pub const BINOMIAL: [f32; 3] = [6.0, 4.0, 1.0];
 /// Standard deviation of the smoothing, mm: less than light spreads on its way through anything but the thinnest parts.
 const SMOOTH_MM: f32 = 1.0;
 
@@ -75,12 +75,8 @@ impl Bodies<'_> {
             progress.advance(1);
         });
         let texel_mm = 2.0 * median_texel_mm(&maps.atlas.charts, &maps.stretch_mm);
-        // Each round with steps twice as long, until the variance is nearly reached.
-        let (mut step, mut variance_mm2) = (1, 0.0);
-        while variance_mm2 + 0.5 * (step as f32 * texel_mm).powi(2) < SMOOTH_MM * SMOOTH_MM {
+        for step in smoothing_steps(texel_mm) {
             map = smoothed(charts, &map, BINOMIAL, step);
-            variance_mm2 += (step as f32 * texel_mm).powi(2);
-            step *= 2;
         }
         Transmission { map }
     }
@@ -132,6 +128,18 @@ impl Bodies<'_> {
         // 1e-6 keeps the quotient finite; a micrometre over it is a metre.
         there.distance_mm / (1.0 - opposite).max(1e-6)
     }
+}
+
+/// Steps in texels of the rounds of smoothing, each twice as long as the one before, until the variance is nearly reached.
+pub fn smoothing_steps(texel_mm: f32) -> Vec<usize> {
+    let (mut step, mut variance_mm2) = (1, 0.0);
+    let mut steps = Vec::new();
+    while variance_mm2 + 0.5 * (step as f32 * texel_mm).powi(2) < SMOOTH_MM * SMOOTH_MM {
+        steps.push(step);
+        variance_mm2 += (step as f32 * texel_mm).powi(2);
+        step *= 2;
+    }
+    steps
 }
 
 /// What the body lets through at a place from light number `light`, for every Gaussian, before any fading. `None` if

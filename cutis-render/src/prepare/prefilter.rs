@@ -16,7 +16,7 @@ const SOURCE: [u32; 2] = [96, 48];
 /// Directions for which the filtered values are kept.
 const TARGET: [u32; 2] = [64, 32];
 /// Roughnesses of the kept reflections.
-const ROUGHNESSES: [f32; 5] = [0.12, 0.2, 0.3, 0.45, 0.7];
+pub const ROUGHNESSES: [f32; 5] = [0.12, 0.2, 0.3, 0.45, 0.7];
 
 /// A filtered environment.
 #[derive(Debug, Clone)]
@@ -40,6 +40,21 @@ impl FilteredEnvironment {
         let irradiance = filter(environment, &rays, |cos| cos.max(0.0));
         let reflections = ROUGHNESSES.iter().map(|&m| normalised(environment, &rays, m)).collect();
         Self { frame: environment.clone(), irradiance, reflections }
+    }
+
+    /// The environment that was filtered; it knows where a direction falls on the maps.
+    pub fn frame(&self) -> &Environment {
+        &self.frame
+    }
+
+    /// Irradiance by the normal, W/m², in latitude-longitude layout.
+    pub fn irradiance_map(&self) -> &Texture {
+        &self.irradiance
+    }
+
+    /// Reflected radiance by the mirror direction, W/(m² sr), one map for each of [`ROUGHNESSES`].
+    pub fn reflection_maps(&self) -> &[Texture] {
+        &self.reflections
     }
 
     /// Irradiance on a surface with this normal that sees the whole environment, W/m².

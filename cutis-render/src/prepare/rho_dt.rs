@@ -12,9 +12,9 @@ use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 /// Entries along the cosine. The albedo is smooth in sqrt(cos), which is what is sampled evenly.
-const COSINES: usize = 64;
+pub const COSINES: usize = 64;
 /// Entries along the roughness, from [`MIN_ROUGHNESS`] to 1.
-const ROUGHNESSES: usize = 32;
+pub const ROUGHNESSES: usize = 32;
 /// Half vectors along each axis of the integral.
 const NODES: u32 = 48;
 
@@ -37,6 +37,16 @@ impl RhoDt {
         let mean_albedo =
             (0..ROUGHNESSES).map(|r| mean_over_hemisphere(&albedo[r * COSINES..][..COSINES])).collect();
         Self { albedo, mean_albedo }
+    }
+
+    /// Directional albedos, [`COSINES`] for each of [`ROUGHNESSES`]; even in the square root of the cosine.
+    pub fn albedos(&self) -> &[f32] {
+        &self.albedo
+    }
+
+    /// Their means over the hemisphere, one for each of [`ROUGHNESSES`].
+    pub fn mean_albedos(&self) -> &[f32] {
+        &self.mean_albedo
     }
 
     /// Directional albedo S of the lobe for rho_s = 1: the fraction of light from `cos` that it reflects.

@@ -171,7 +171,7 @@ impl ObjectPass<'_> {
         progress: &dyn Progress,
     ) -> Result<ObjectMaps, RenderError> {
         let (object, settings) = (self.object, self.settings);
-        let kernel = clock.time("kernel", || self.kernel())?;
+        let kernel = clock.time("kernel", || chosen_kernel(&object.material, settings))?;
         let rho_dt = clock.time("rho_dt", || RhoDt::new(object.material.f0));
         let atlas = clock.time("atlas", || Atlas::new(object, size));
         let stretch_mm = clock.time("stretch", || stretch_mm_per_texel(object, &atlas));
@@ -180,7 +180,7 @@ impl ObjectPass<'_> {
         let ambient = clock.time("ambient occlusion", || {
             Ambient::new(object, &atlas, half_charts.halved(), self.bvh, samples, settings.seed, progress)
         });
-        let opaque_mm = OPAQUE_DEVIATIONS * kernel.reach_mm();
+        let opaque_mm = opaque_mm(&kernel);
         let rays = Rays { scene: self.scene, bvh: self.bvh, settings, opaque_mm };
         let half_size = clock.time("shadows", || HalfSize::new(rays, object, &atlas, &half_charts, progress));
         let inputs = IrradianceInputs {
@@ -210,19 +210,28 @@ impl ObjectPass<'_> {
             rho_dt,
         })
     }
+}
 
-    fn kernel(&self) -> Result<Kernel, RenderError> {
-        let kernel = kernel_of(&self.object.material, self.settings.gaussians)?;
-        Ok(match self.settings.diffusion {
-            Diffusion::Separable => kernel,
-            Diffusion::None => Kernel::opaque(kernel.total()),
-        })
-    }
+/// The kernel of a material under the diffusion operator of the settings.
+///
+/// # Errors
+/// If the material cannot be turned into a kernel.
+pub fn chosen_kernel(material: &Material, settings: &Settings) -> Result<Kernel, RenderError> {
+    let kernel = kernel_of(material, settings.gaussians)?;
+    Ok(match settings.diffusion {
+        Diffusion::Separable => kernel,
+        Diffusion::None => Kernel::opaque(kernel.total()),
+    })
+}
+
+/// Thickness of a body beyond which nothing comes through, mm.
+pub fn opaque_mm(kernel: &Kernel) -> f32 {
+    OPAQUE_DEVIATIONS * kernel.reach_mm()
 }
 
 /// Size of each object's texture: the largest object gets all of it (rounded up so that it can be halved), others by the square root of their area, in
 /// powers of two below.
-fn atlas_sizes(objects: &[Object], largest: u32) -> Vec<u32> {
+pub fn atlas_sizes(objects: &[Object], largest: u32) -> Vec<u32> {
     let area = |object: &Object| {
         (0..object.mesh.triangles.len()).map(|t| f64::from(object.mesh.area_mm2(t))).sum::<f64>()
     };
@@ -242,7 +251,8 @@ fn atlas_sizes(objects: &[Object], largest: u32) -> Vec<u32> {
     areas.iter().map(size).collect()
 }
 
-fn warnings(scene: &Scene) -> Vec<String> {
+/// What a person should know of a scene that is drawn by this technique.
+pub fn warnings(scene: &Scene) -> Vec<String> {
     let open = scene.objects.iter().filter(|object| !object.closed).map(|object| {
         let name = &object.name;
         format!("'{name}' is not a closed surface: light that enters may find no way out, and thin parts stay dark")

@@ -3,10 +3,13 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Small enough for a test: a picture of a few thousand pixels with the least of everything.
+/// Small enough for a test: a picture of a few thousand pixels with the least of everything, by the
+/// processor.
 #[allow(dead_code, reason = "not every test file renders")]
-pub const TINY: [&str; 13] = [
+pub const TINY: [&str; 15] = [
     "render",
+    "--backend",
+    "cpu",
     "--size",
     "48x40",
     "--samples",

@@ -1,0 +1,125 @@
+//! The device: which adapter, with which limits.
+
+use crate::GpuError;
+use bytemuck::Pod;
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
+
+/// Which adapters will do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Adapters {
+    /// Graphics processors only.
+    Hardware,
+    /// Programs that stand in for one (llvmpipe, SwiftShader, WARP) as well.
+    Any,
+}
+
+/// A device and its queue.
+#[derive(Debug, Clone)]
+pub struct Gpu {
+    /// Makes buffers, textures and pipelines.
+    pub device: wgpu::Device,
+    /// Takes the work.
+    pub queue: wgpu::Queue,
+    /// What it runs on.
+    pub info: wgpu::AdapterInfo,
+}
+
+impl Gpu {
+    /// Finds the best adapter of a kind and opens it with the default limits of WebGPU.
+    ///
+    /// # Errors
+    /// If there is none, or it gives no device.
+    pub fn find(adapters: Adapters) -> Result<Self, GpuError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        let mut found = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::PRIMARY));
+        found.sort_by_key(|adapter| preference(adapter.get_info().device_type));
+        let software: Vec<_> = found.iter().filter(|a| is_software(a)).map(|a| a.get_info().name).collect();
+        let best = found.into_iter().find(|a| adapters == Adapters::Any || !is_software(a));
+        let adapter = best.ok_or_else(|| no_adapter(adapters, &software))?;
+        Self::open(&adapter)
+    }
+
+    /// A device that somebody else has made, with the default limits of WebGPU at least.
+    pub fn from_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        let info = device.adapter_info();
+        Self { device, queue, info }
+    }
+
+    fn open(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
+        let info = adapter.get_info();
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("cutis"),
+            // Times of passes are told where the adapter can measure them.
+            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            ..wgpu::DeviceDescriptor::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
+            .map_err(|e| GpuError::NoDevice { adapter: info.name.clone(), reason: e.to_string() })?;
+        Ok(Self { device, queue, info })
+    }
+
+    /// Name of the adapter and of what drives it, for reports.
+    pub fn name(&self) -> String {
+        let wgpu::AdapterInfo { name, driver, backend, .. } = &self.info;
+        if driver.is_empty() {
+            format!("{name} ({backend})")
+        } else {
+            format!("{name} ({driver}, {backend})")
+        }
+    }
+
+    /// A buffer of one uniform struct.
+    pub fn uniform<T: Pod>(&self, label: &str, value: &T) -> wgpu::Buffer {
+        self.buffer(label, bytemuck::bytes_of(value), wgpu::BufferUsages::UNIFORM)
+    }
+
+    /// A buffer that shaders read as an array. Empty arrays have one element of zeros, for none may be empty.
+    pub fn storage<T: Pod>(&self, label: &str, values: &[T]) -> wgpu::Buffer {
+        let zero = [T::zeroed()];
+        let bytes = bytemuck::cast_slice(if values.is_empty() { &zero } else { values });
+        self.buffer(label, bytes, wgpu::BufferUsages::STORAGE)
+    }
+
+    fn buffer(&self, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        let usage = usage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
+        self.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents, usage })
+    }
+
+    /// Waits until all work is done.
+    ///
+    /// # Errors
+    /// If the device is lost.
+    pub fn wait(&self) -> Result<(), GpuError> {
+        let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
+        waited.map(|_| ()).map_err(|e| GpuError::Lost { reason: e.to_string() })
+    }
+
+    /// Whether passes can be timed by the device itself.
+    pub fn has_timestamps(&self) -> bool {
+        self.device.features().contains(wgpu::Features::TIMESTAMP_QUERY)
+    }
+}
+
+/// Lower is better.
+fn preference(kind: wgpu::DeviceType) -> u32 {
+    match kind {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    }
+}
+
+fn is_software(adapter: &wgpu::Adapter) -> bool {
+    adapter.get_info().device_type == wgpu::DeviceType::Cpu
+}
+
+fn no_adapter(adapters: Adapters, software: &[String]) -> GpuError {
+    let among = if adapters == Adapters::Hardware { " but software ones" } else { "" };
+    let reason = match software {
+        [] => "no Vulkan, Metal or Direct3D 12 driver offers one".to_owned(),
+        names => format!("found only {}", names.join(", ")),
+    };
+    GpuError::NoAdapter { among, reason }
+}

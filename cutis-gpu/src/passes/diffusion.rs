@@ -1,0 +1,300 @@
+//! Diffusion of light over the unrolled surface, by the plan of cutis-render's `diffusion`: seven-tap blurs along u and v,
+//! each Gaussian from the one before, wide ones in smaller textures.
+
+use crate::Gpu;
+use crate::map::Map;
+use crate::passes::over_charts;
+use crate::pipeline::{Blueprint, Bound, Pipeline};
+use crate::scene::charts::ChartTexture;
+use crate::shaders;
+use crate::step::Step;
+use bytemuck::{Pod, Zeroable};
+use cutis_render::passes::blur;
+use cutis_render::passes::diffusion::Action;
+use cutis_render::passes::tap::TAPS;
+use wgpu::TextureFormat as Format;
+
+/// Format of stretch and of variances: two numbers a texel.
+const PAIR: Format = Format::Rg16Float;
+
+/// How one step widens along one axis; the twin of `Widening` in `taps.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Widening {
+    /// Variance before the step, mm².
+    pub from_mm2: f32,
+    /// Variance after it, mm².
+    pub to_mm2: f32,
+    /// Variance in texel² that other means have added or will add.
+    pub saved_texel2: f32,
+    /// Variance of the weights at spacing 1, texel².
+    pub unit_variance: f32,
+    /// Weight of the centre and of one tap at each distance.
+    pub weights: [f32; 4],
+    /// 0 along u, 1 along v.
+    pub axis: u32,
+    /// Fills up the struct.
+    pub pad0: u32,
+    /// Fills up the struct.
+    pub pad1: u32,
+    /// Fills up the struct.
+    pub pad2: u32,
+}
+
+/// The line along which a layer is blurred; the twin of `Along` in `blur.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Along {
+    /// From one texel to the next.
+    pub step_texels: [i32; 2],
+    /// Fills up the struct.
+    pub pad0: u32,
+    /// Fills up the struct.
+    pub pad1: u32,
+}
+
+/// What is halved; the twin of `Halved` in `halve.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Halved {
+    /// Layer that is read.
+    pub layer: u32,
+    /// Factor on the mean.
+    pub factor: f32,
+    /// Fills up the struct.
+    pub pad0: u32,
+    /// Fills up the struct.
+    pub pad1: u32,
+}
+
+/// The light before any blur and after every Gaussian.
+#[derive(Debug)]
+pub struct Levels {
+    /// Level 0 is unblurred; level i is blurred by the i-th variance.
+    pub all: Vec<Level>,
+}
+
+/// One blurred state of all layers.
+#[derive(Debug, Clone)]
+pub struct Level {
+    /// Charts at this level's size.
+    pub charts: ChartTexture,
+    /// Irradiance with distance in alpha; with several lights, their distances in further layers.
+    pub light: Map,
+}
+
+impl Levels {
+    /// The nearest level before this one that is larger; the first if there is none.
+    pub fn finer_than(&self, level: usize) -> &Level {
+        let size = self.all[level].charts.size;
+        self.all[..level].iter().rev().find(|l| l.charts.size > size).unwrap_or(&self.all[0])
+    }
+}
+
+/// The pass's pipelines and tables.
+#[derive(Debug)]
+pub struct DiffusionPass {
+    taps: Pipeline,
+    blur: Pipeline,
+    halve_light: Pipeline,
+    halve_stretch: Pipeline,
+    narrow: wgpu::Buffer,
+}
+
+/// What has to be done.
+#[derive(Debug)]
+pub struct Diffusion {
+    /// Lays the taps: to be done when the geometry has changed.
+    pub taps: Vec<Step>,
+    /// Blurs the light.
+    pub blurs: Vec<Step>,
+    /// What that fills.
+    pub levels: Levels,
+}
+
+impl DiffusionPass {
+    /// Compiles them.
+    pub fn new(gpu: &Gpu) -> Self {
+        let pipeline = |name, source, entry, targets: &[Format]| {
+            let entries = ["cover_run", entry];
+            Pipeline::new(gpu, &Blueprint { name, source, entries, targets, additive: false, depth: false })
+        };
+        let light = &[Format::Rgba16Float];
+        Self {
+            taps: pipeline("taps", shaders::TAPS, "lay_taps", &[PAIR, PAIR]),
+            blur: pipeline("blur", shaders::BLUR, "blur", light),
+            halve_light: pipeline("blur", shaders::HALVE, "halve", light),
+            halve_stretch: pipeline("taps", shaders::HALVE, "halve", &[PAIR]),
+            narrow: gpu.storage("discrete variances", &TAPS.narrow),
+        }
+    }
+
+    /// The steps of a plan. `charts` are those of the first level and of every halved one.
+    pub fn steps(
+        &self,
+        gpu: &Gpu,
+        charts: &[ChartTexture],
+        light: &Map,
+        stretch: &Map,
+        plan: &[Action],
+    ) -> Diffusion {
+        let mut way = Way::new(self, gpu, charts, light, stretch);
+        for action in without_steps_between(plan) {
+            match action {
+                Action::Halve => way.halve(),
+                Action::Step(widening) => way.step(widening),
+                Action::Keep => way.levels.push(way.level()),
+            }
+        }
+        Diffusion { taps: way.taps, blurs: way.blurs, levels: Levels { all: way.levels } }
+    }
+}
+
+/// Steps in between keep taps from being too far apart. A Gaussian sampled at every texel needs none: one step does what
+/// several in a row would do.
+fn without_steps_between(plan: &[Action]) -> Vec<Action> {
+    let mut actions: Vec<Action> = Vec::new();
+    for &action in plan {
+        match (actions.last_mut(), action) {
+            (Some(Action::Step(before)), Action::Step(next)) => before.to_mm2 = next.to_mm2,
+            _ => actions.push(action),
+        }
+    }
+    actions
+}
+
+/// Where a plan has got to.
+struct Way<'a> {
+    pass: &'a DiffusionPass,
+    gpu: &'a Gpu,
+    charts: &'a [ChartTexture],
+    halvings: usize,
+    light: Map,
+    stretch: Map,
+    /// Light blurred along u only.
+    half_way: Map,
+    taps: Vec<Step>,
+    blurs: Vec<Step>,
+    levels: Vec<Level>,
+}
+
+impl<'a> Way<'a> {
+    fn new(
+        pass: &'a DiffusionPass,
+        gpu: &'a Gpu,
+        charts: &'a [ChartTexture],
+        light: &Map,
+        stretch: &Map,
+    ) -> Self {
+        Self {
+            half_way: same_layers(gpu, "blurred light", charts[0].size, light),
+            levels: vec![Level { charts: charts[0].clone(), light: light.clone() }],
+            light: light.clone(),
+            stretch: stretch.clone(),
+            taps: Vec::new(),
+            blurs: Vec::new(),
+            halvings: 0,
+            pass,
+            gpu,
+            charts,
+        }
+    }
+
+    fn charts(&self) -> &'a ChartTexture {
+        &self.charts[self.halvings]
+    }
+
+    fn level(&self) -> Level {
+        Level { charts: self.charts().clone(), light: self.light.clone() }
+    }
+
+    fn halve(&mut self) {
+        let fine = self.charts();
+        self.halvings += 1;
+        let size = self.charts().size;
+        self.half_way = same_layers(self.gpu, "blurred light", size, &self.light);
+        let light = same_layers(self.gpu, "halved light", size, &self.light);
+        for (layer, target) in (0..).zip(&light.layers) {
+            let halved = Halved { layer, factor: 1.0, ..Halved::zeroed() };
+            self.blurs.push(self.halved(&self.pass.halve_light, fine, halved, &self.light, target));
+        }
+        let stretch = Map::square(self.gpu, "stretch", size, 1, PAIR);
+        let halved = Halved { factor: 2.0, ..Halved::zeroed() };
+        self.taps.push(self.halved(&self.pass.halve_stretch, fine, halved, &self.stretch, stretch.view()));
+        (self.light, self.stretch) = (light, stretch);
+    }
+
+    fn halved(
+        &self,
+        pipeline: &Pipeline,
+        fine: &ChartTexture,
+        halved: Halved,
+        source: &Map,
+        target: &wgpu::TextureView,
+    ) -> Step {
+        let numbers = self.gpu.uniform("halved", &halved);
+        let bound = [
+            (1, Bound::Buffer(&numbers)),
+            (2, Bound::Texture(fine.map.view())),
+            (3, Bound::Texture(self.charts().map.view())),
+            (4, Bound::Texture(&source.array)),
+        ];
+        over_charts(self.gpu, pipeline, self.charts(), &bound, &[target], false)
+    }
+
+    /// Blurs along u, then along v into a map of its own, for it is kept.
+    fn step(&mut self, widening: blur::Widening) {
+        self.blur(widening, 0, self.half_way.clone());
+        let level = same_layers(self.gpu, "level", self.charts().size, &self.light);
+        self.blur(widening, 1, level);
+    }
+
+    fn blur(&mut self, widening: blur::Widening, axis: u32, target: Map) {
+        let variances = self.lay_taps(widening, axis);
+        let step_texels = if axis == 0 { [1, 0] } else { [0, 1] };
+        let numbers = self.gpu.uniform("along", &Along { step_texels, ..Along::zeroed() });
+        for (source, target) in self.light.layers.iter().zip(&target.layers) {
+            let bound = [
+                (1, Bound::Buffer(&numbers)),
+                (2, Bound::Texture(source)),
+                (3, Bound::Texture(variances.view())),
+            ];
+            self.blurs.push(over_charts(self.gpu, &self.pass.blur, self.charts(), &bound, &[target], false));
+        }
+        self.light = target;
+    }
+
+    /// Variances along an axis; the stretch is blurred by them.
+    fn lay_taps(&mut self, widening: blur::Widening, axis: u32) -> Map {
+        let size = self.charts().size;
+        let variances = Map::square(self.gpu, "variances", size, 1, PAIR);
+        let stretch = Map::square(self.gpu, "stretch", size, 1, PAIR);
+        let numbers = self.gpu.uniform("widening", &numbers(widening, axis));
+        let bound = [
+            (1, Bound::Buffer(&numbers)),
+            (2, Bound::Texture(self.charts().map.view())),
+            (3, Bound::Texture(self.stretch.view())),
+            (4, Bound::Buffer(&self.pass.narrow)),
+        ];
+        let targets = [variances.view(), stretch.view()];
+        self.taps.push(over_charts(self.gpu, &self.pass.taps, self.charts(), &bound, &targets, false));
+        self.stretch = stretch;
+        variances
+    }
+}
+
+fn same_layers(gpu: &Gpu, label: &str, size: u32, like: &Map) -> Map {
+    Map::square(gpu, label, size, like.layers.len() as u32, Format::Rgba16Float)
+}
+
+fn numbers(widening: blur::Widening, axis: u32) -> Widening {
+    Widening {
+        from_mm2: widening.from_mm2,
+        to_mm2: widening.to_mm2,
+        saved_texel2: widening.saved_texel2,
+        weights: TAPS.weights,
+        unit_variance: TAPS.unit_variance,
+        axis,
+        ..Widening::zeroed()
+    }
+}

@@ -1,0 +1,130 @@
+//! The passes of the frame, by the names the papers give them; each beside its WGSL. Each makes steps that are prepared
+//! once and run in every frame.
+
+pub mod atlas;
+pub mod diffusion;
+pub mod downsample;
+pub mod gather;
+pub mod irradiance;
+pub mod resolve;
+pub mod shadow;
+pub mod shares;
+pub mod stretch;
+pub mod transmission;
+pub mod visibility;
+
+use crate::Gpu;
+use crate::pipeline::{Bound, Pipeline};
+use crate::scene::charts::ChartTexture;
+use crate::step::{Draw, Step};
+
+/// Side of a tile of a map that is drawn or left out, texels; also in `lib/tiles.wgsl`.
+pub const TILE_TEXELS: usize = 16;
+/// Lights that are looked at together: as many as a texel has channels.
+pub const LIGHTS_TOGETHER: usize = 4;
+
+/// Everything that is compiled once.
+#[derive(Debug)]
+pub struct Passes {
+    /// How textures are read.
+    pub samplers: Samplers,
+    /// Pass `stretch`.
+    pub stretch: stretch::StretchPass,
+    /// Pass `atlas`.
+    pub atlas: atlas::AtlasPass,
+    /// Pass `shadow map`.
+    pub shadow: shadow::ShadowPass,
+    /// Pass `shadows`.
+    pub visibility: visibility::VisibilityPass,
+    /// Pass `irradiance`.
+    pub irradiance: irradiance::IrradiancePass,
+    /// Pass `shares`.
+    pub shares: shares::SharesPass,
+    /// Pass `blur`.
+    pub diffusion: diffusion::DiffusionPass,
+    /// Pass `gather`.
+    pub gather: gather::GatherPass,
+    /// Pass `transmission`.
+    pub transmission: transmission::TransmissionPass,
+    /// Pass `resolve`.
+    pub resolve: resolve::ResolvePass,
+    /// Pass `downsample`.
+    pub downsample: downsample::DownsamplePass,
+}
+
+impl Passes {
+    /// Compiles all of them.
+    pub fn new(gpu: &Gpu) -> Self {
+        Self {
+            samplers: Samplers::new(gpu),
+            stretch: stretch::StretchPass::new(gpu),
+            atlas: atlas::AtlasPass::new(gpu),
+            shadow: shadow::ShadowPass::new(gpu),
+            visibility: visibility::VisibilityPass::new(gpu),
+            irradiance: irradiance::IrradiancePass::new(gpu),
+            shares: shares::SharesPass::new(gpu),
+            diffusion: diffusion::DiffusionPass::new(gpu),
+            gather: gather::GatherPass::new(gpu),
+            transmission: transmission::TransmissionPass::new(gpu),
+            resolve: resolve::ResolvePass::new(gpu),
+            downsample: downsample::DownsamplePass::new(gpu),
+        }
+    }
+}
+
+/// The ways in which textures are read.
+#[derive(Debug)]
+pub struct Samplers {
+    /// Bilinear; the edge goes on outside.
+    pub linear: wgpu::Sampler,
+    /// Bilinear; repeats.
+    pub repeating: wgpu::Sampler,
+    /// Bilinear; repeats along u, as a latitude-longitude map needs.
+    pub around_sky: wgpu::Sampler,
+}
+
+impl Samplers {
+    fn new(gpu: &Gpu) -> Self {
+        use wgpu::{AddressMode, FilterMode};
+        let sampler = |label, u, v| {
+            gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some(label),
+                address_mode_u: u,
+                address_mode_v: v,
+                mag_filter: FilterMode::Linear,
+                min_filter: FilterMode::Linear,
+                ..wgpu::SamplerDescriptor::default()
+            })
+        };
+        let (clamp, repeat) = (AddressMode::ClampToEdge, AddressMode::Repeat);
+        Self {
+            linear: sampler("linear", clamp, clamp),
+            repeating: sampler("repeating", repeat, repeat),
+            around_sky: sampler("around the sky", repeat, clamp),
+        }
+    }
+}
+
+/// A draw over all tiles of a map that hold a chart. Binding 0 is the list of these; `clear` empties the targets before.
+fn over_charts(
+    gpu: &Gpu,
+    pipeline: &Pipeline,
+    charts: &ChartTexture,
+    bound: &[(u32, Bound)],
+    targets: &[&wgpu::TextureView],
+    clear: bool,
+) -> Step {
+    let mut all = vec![(0, Bound::Buffer(&charts.tiles))];
+    all.extend_from_slice(bound);
+    Step::Draw(Draw {
+        pass: pipeline.name,
+        pipeline: pipeline.raw.clone(),
+        bind_groups: vec![pipeline.bind(gpu, 0, &all)],
+        targets: targets.iter().map(|&view| view.clone()).collect(),
+        depth: None,
+        clear: clear.then_some(wgpu::Color::TRANSPARENT),
+        // Two triangles for every run of tiles.
+        vertices: 6,
+        instances: charts.runs,
+    })
+}

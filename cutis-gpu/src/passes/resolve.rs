@@ -1,0 +1,228 @@
+//! The final pass: from blurred irradiance to radiance, and what lies behind everything. The twin of cutis-render's
+//! `resolve`.
+
+use crate::Gpu;
+use crate::map::Map;
+use crate::passes::Samplers;
+use crate::passes::diffusion::Level;
+use crate::pipeline::{Blueprint, Bound, Pipeline};
+use crate::scene::charts::ChartTexture;
+use crate::scene::environment::EnvironmentMaps;
+use crate::scene::geometry::Geometry;
+use crate::scene::material::MaterialMaps;
+use crate::shaders;
+use crate::step::{Draw, Step};
+use bytemuck::{Pod, Zeroable};
+use wgpu::TextureFormat as Format;
+
+/// What the picture's samples are kept as.
+pub const PICTURE: Format = Format::Rgba16Float;
+/// What a layer's samples are kept as.
+pub const LAYER: Format = Format::Rgba32Float;
+
+/// A layer beside the picture; the twin of `Wanted` in `layer.wgsl`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Wanted {
+    /// [`LayerKind`] as a number.
+    pub layer: u32,
+    /// Fills up the struct.
+    pub pad0: u32,
+    /// Fills up the struct.
+    pub pad1: u32,
+    /// Fills up the struct.
+    pub pad2: u32,
+}
+
+/// What a layer shows; the numbers are those of the constants in `layer.wgsl`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u32)]
+pub enum LayerKind {
+    /// Irradiance, blurred or not.
+    Level = 0,
+    /// Distances towards four lights.
+    Distances = 1,
+    /// Distance towards the only light.
+    DistanceOfOne = 2,
+    /// Shading normal.
+    Normal = 3,
+    /// Diffuse colour.
+    Albedo = 4,
+    /// Radiance reflected by the surface.
+    Specular = 5,
+    /// Radiance that came through the body.
+    Transmission = 6,
+    /// Radiance of light that has been inside.
+    Diffuse = 7,
+    /// Light that leaves, W/m².
+    Exitance = 8,
+    /// Number of the chart.
+    Charts = 9,
+    /// Millimetres per texel.
+    Stretch = 10,
+}
+
+/// Everything the pass reads.
+#[derive(Debug, Clone, Copy)]
+pub struct ResolveInputs<'a> {
+    /// How textures are read.
+    pub samplers: &'a Samplers,
+    /// Where the picture is taken from.
+    pub camera: &'a wgpu::Buffer,
+    /// All lights.
+    pub lights: &'a wgpu::Buffer,
+    /// The filtered environment.
+    pub environment: &'a EnvironmentMaps,
+    /// The object's mesh.
+    pub geometry: &'a Geometry,
+    /// What it is made of.
+    pub material: &'a MaterialMaps,
+    /// Its charts, and those at half and at a quarter of the size.
+    pub charts: [&'a ChartTexture; 3],
+    /// The kernel's sum of Gaussians.
+    pub local: &'a Map,
+    /// Light that came through.
+    pub transmission: &'a Map,
+    /// Fraction of each light that is seen.
+    pub visibility: &'a Map,
+    /// Openness.
+    pub ambient: &'a Map,
+    /// Table of what the surface lets through.
+    pub rho_dt: &'a Map,
+}
+
+/// What is drawn into.
+#[derive(Debug, Clone, Copy)]
+pub struct Canvas<'a> {
+    /// Samples of the picture or of a layer.
+    pub samples: &'a Map,
+    /// Depths of them.
+    pub depth: &'a Map,
+    /// What is there before the first object: a colour; none if the sky has been drawn.
+    pub clear: Option<wgpu::Color>,
+    /// Whether nothing was drawn there before.
+    pub first: bool,
+}
+
+/// The pass's pipelines.
+#[derive(Debug)]
+pub struct ResolvePass {
+    shade: Pipeline,
+    show: Pipeline,
+    sky: Pipeline,
+}
+
+impl ResolvePass {
+    /// Compiles them.
+    pub fn new(gpu: &Gpu) -> Self {
+        let pipeline = |source, entries, format, depth| {
+            let (name, targets) = ("resolve", &[format]);
+            Pipeline::new(gpu, &Blueprint { name, source, entries, targets, additive: false, depth })
+        };
+        Self {
+            shade: pipeline(shaders::RESOLVE, ["see", "shade"], PICTURE, true),
+            show: pipeline(shaders::RESOLVE, ["see", "show"], LAYER, true),
+            sky: pipeline(shaders::SKY, ["cover_picture", "see_sky"], PICTURE, false),
+        }
+    }
+
+    /// Draws an object.
+    pub fn step(&self, gpu: &Gpu, inputs: &ResolveInputs, canvas: &Canvas) -> Step {
+        let bind_groups = vec![bind(gpu, &self.shade, inputs)];
+        draw(&self.shade, bind_groups, inputs, canvas)
+    }
+
+    /// Draws a layer of an object; `level` is what layers of textures are read from.
+    pub fn layer_step(
+        &self,
+        gpu: &Gpu,
+        inputs: &ResolveInputs,
+        kind: LayerKind,
+        level: &Level,
+        canvas: &Canvas,
+    ) -> Step {
+        let wanted = gpu.uniform("wanted", &Wanted { layer: kind as u32, ..Wanted::zeroed() });
+        let more = [
+            (0, Bound::Buffer(&wanted)),
+            (1, Bound::Texture(&level.light.array)),
+            (2, Bound::Texture(level.charts.map.view())),
+        ];
+        let bind_groups = vec![bind(gpu, &self.show, inputs), self.show.bind(gpu, 1, &more)];
+        draw(&self.show, bind_groups, inputs, canvas)
+    }
+
+    /// Draws the environment behind everything.
+    pub fn sky_step(
+        &self,
+        gpu: &Gpu,
+        samplers: &Samplers,
+        camera: &wgpu::Buffer,
+        environment: &EnvironmentMaps,
+        sky: &Map,
+        samples: &Map,
+    ) -> Step {
+        let bound = [
+            (0, Bound::Buffer(camera)),
+            (1, Bound::Buffer(&environment.numbers)),
+            (2, Bound::Texture(sky.view())),
+            (3, Bound::Sampler(&samplers.around_sky)),
+        ];
+        Step::Draw(Draw {
+            pass: self.sky.name,
+            pipeline: self.sky.raw.clone(),
+            bind_groups: vec![self.sky.bind(gpu, 0, &bound)],
+            targets: vec![samples.view().clone()],
+            depth: None,
+            clear: None,
+            vertices: 3,
+            instances: 1,
+        })
+    }
+}
+
+fn bind(gpu: &Gpu, pipeline: &Pipeline, inputs: &ResolveInputs) -> wgpu::BindGroup {
+    let ResolveInputs { samplers, environment, geometry, material, charts, .. } = inputs;
+    let bound = [
+        (0, Bound::Buffer(&geometry.vertices)),
+        (1, Bound::Buffer(&geometry.triangles)),
+        (2, Bound::Buffer(inputs.camera)),
+        (3, Bound::Buffer(inputs.lights)),
+        (4, Bound::Buffer(&material.numbers)),
+        (5, Bound::Buffer(&environment.numbers)),
+        (6, Bound::Texture(charts[0].map.view())),
+        (7, Bound::Texture(inputs.local.view())),
+        (8, Bound::Texture(charts[1].map.view())),
+        (9, Bound::Texture(inputs.transmission.view())),
+        (10, Bound::Texture(&inputs.visibility.array)),
+        (11, Bound::Texture(inputs.ambient.view())),
+        (12, Bound::Texture(charts[2].map.view())),
+        (13, Bound::Texture(&environment.reflections.array)),
+        (14, Bound::Texture(inputs.rho_dt.view())),
+        (15, Bound::Texture(material.albedo.view())),
+        (16, Bound::Texture(material.relief.view())),
+        (17, Bound::Texture(material.rho_s.view())),
+        (18, Bound::Texture(material.roughness.view())),
+        (19, Bound::Sampler(&samplers.linear)),
+        (20, Bound::Sampler(&samplers.repeating)),
+        (21, Bound::Sampler(&samplers.around_sky)),
+    ];
+    pipeline.bind(gpu, 0, &bound)
+}
+
+fn draw(
+    pipeline: &Pipeline,
+    bind_groups: Vec<wgpu::BindGroup>,
+    inputs: &ResolveInputs,
+    canvas: &Canvas,
+) -> Step {
+    Step::Draw(Draw {
+        pass: pipeline.name,
+        pipeline: pipeline.raw.clone(),
+        bind_groups,
+        targets: vec![canvas.samples.view().clone()],
+        depth: Some((canvas.depth.view().clone(), canvas.first)),
+        clear: canvas.clear.filter(|_| canvas.first),
+        vertices: 3 * inputs.geometry.triangle_count,
+        instances: 1,
+    })
+}

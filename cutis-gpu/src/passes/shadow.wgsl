@@ -1,0 +1,46 @@
+// The scene as a light sees it: the shadow map's depth, and with it the translucent shadow map's texture coordinates of
+// the surface that faces the light (d'Eon, Luebke & Enderton 2007, section 5.2).
+
+@group(0) @binding(0) var<storage, read> vertices: array<Vertex>;
+@group(0) @binding(1) var<storage, read> triangles: array<Triangle>;
+@group(0) @binding(2) var<storage, read> lights: array<Light>;
+@group(0) @binding(3) var<uniform> drawn: Drawn;
+
+struct Drawn {
+    light: u32,
+    object: u32,
+    pad0: u32,
+    pad1: u32,
+}
+
+struct Seen {
+    @builtin(position) position: vec4f,
+    @location(0) depth_mm: f32,
+    @location(1) uv: vec2f,
+    @location(2) @interpolate(flat) chart: u32,
+}
+
+struct Mapped {
+    @location(0) depth_mm: f32,
+    /// Texture coordinates in x; chart and object in y.
+    @location(1) surface: vec2u,
+}
+
+@vertex
+fn see_from_light(@builtin(vertex_index) index: u32) -> Seen {
+    let triangle = triangles[index / 3u];
+    let vertex = vertices[triangle[index % 3u]];
+    let map = map_of(drawn.light);
+    let axes_mm = in_map_axes(map, vertex.position_mm);
+    let depth = (axes_mm.z - map.near_mm) / (map.far_mm - map.near_mm);
+    var position = vec4f(axes_mm.xy / map.half_width, depth, 1.0);
+    if !map.directional {
+        position = vec4f(axes_mm.xy / map.half_width, depth * map.far_mm, axes_mm.z);
+    }
+    return Seen(position, axes_mm.z, vec2f(vertex.u, vertex.v), triangle.w);
+}
+
+@fragment
+fn map_surface(seen: Seen) -> Mapped {
+    return Mapped(seen.depth_mm, vec2u(pack2x16unorm(seen.uv), seen.chart | (drawn.object << 16u)));
+}

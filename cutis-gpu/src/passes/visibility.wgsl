@@ -1,0 +1,179 @@
+// What every texel sees of four lights, and how far it is through the body towards each: percentage-closer soft shadows
+// (Fernando 2005) and the translucent shadow map.
+//
+// The bias follows from the map: no texel of it may hold a depth that the surface under the point itself has within
+// that texel. The surface is taken for its tangent plane, moved outwards by as much as it may be curved.
+
+@group(0) @binding(1) var<storage, read> lights: array<Light>;
+@group(0) @binding(2) var<uniform> group_of: Group;
+@group(0) @binding(3) var places: texture_2d<u32>;
+@group(0) @binding(4) var stretch_map: texture_2d<f32>;
+@group(0) @binding(5) var depths: texture_2d_array<f32>;
+@group(0) @binding(6) var surfaces: texture_2d_array<u32>;
+@group(0) @binding(7) var charts: texture_2d<u32>;
+
+struct Group {
+    first_light: u32,
+    light_count: u32,
+    object: u32,
+    /// Places on a light's disc that are tried.
+    samples: u32,
+    /// Distance beyond which nothing comes through, mm.
+    opaque_mm: f32,
+    pad0: u32,
+    pad1: u32,
+    pad2: u32,
+}
+
+struct Visibility {
+    @location(0) seen: vec4f,
+    @location(1) distance_mm: vec4f,
+}
+
+/// Samples of the search for what may hide a light.
+const SEARCH_SAMPLES: u32 = 12u;
+/// Stream of random numbers this pass draws from; one per light from here on.
+const STREAM: u32 = 0x100u;
+/// Half the diagonal of two texels: what a filtered read takes in around its place.
+const READ_TEXELS: f32 = 1.42;
+/// Slope of a surface against a map's plane beyond which the map says nothing about it.
+const MAX_SLOPE: f32 = 12.0;
+
+@fragment
+fn see_lights(@builtin(position) position: vec4f) -> Visibility {
+    var result = Visibility(vec4f(0.0), vec4f(0.0));
+    let texel = vec2i(position.xy);
+    if textureLoad(charts, texel, 0).x == NO_CHART {
+        return result;
+    }
+    let place = textureLoad(places, texel, 0);
+    let point_mm = bitcast<vec3f>(place.xyz);
+    let normal = unpack_unit(place.w);
+    let lift_mm = textureLoad(stretch_map, texel, 0).z;
+    for (var i = 0u; i < group_of.light_count; i++) {
+        let l = group_of.first_light + i;
+        let towards = sample_light(l, point_mm);
+        let map = map_of(l);
+        let faces = dot(normal, towards.dir_to_light) >= 0.0;
+        if faces {
+            let shift = random2(vec2u(texel), STREAM + l);
+            result.seen[i] = visible_fraction(map, lights[l].extent, point_mm + normal * lift_mm, normal, shift);
+        }
+        if !faces {
+            result.distance_mm[i] = distance_mm(map, point_mm, normal, towards.dir_to_light);
+        }
+    }
+    return result;
+}
+
+/// Distance d through the body, never more than what is opaque anyway, mm.
+fn distance_mm(map: LightMap, point_mm: vec3f, normal: vec3f, dir_to_light: vec3f) -> f32 {
+    let there = light_facing_surface(map, depths, surfaces, point_mm, group_of.object);
+    if !there.found {
+        return group_of.opaque_mm;
+    }
+    let texel = vec2i(there.uv * vec2f(textureDimensions(places)));
+    let normal_there = unpack_unit(textureLoad(places, texel, 0).w);
+    return min(corrected_mm(there.distance_mm, normal, normal_there, dir_to_light), group_of.opaque_mm);
+}
+
+/// A point before a light's map.
+struct Receiver {
+    axes_mm: vec3f,
+    /// Its tangent plane: depth at the map's centre and growth per unit of the map, in what is linear on the map.
+    uv: vec2f,
+    normal: vec3f,
+    /// Depth that may be missed within one texel, mm.
+    bias_mm: f32,
+}
+
+fn visible_fraction(map: LightMap, extent: f32, point_mm: vec3f, normal: vec3f, shift: vec2f) -> f32 {
+    if map.layer == NO_MAP {
+        return 1.0;
+    }
+    let to = receiver(map, point_mm, normal);
+    if any(to.uv < vec2f(0.0)) || any(to.uv > vec2f(1.0)) {
+        return 1.0;
+    }
+    if extent <= 0.0 {
+        return lit_share(map, to, to.uv);
+    }
+    let hidden_by_mm = blocker_depth_mm(map, extent, to, shift);
+    // Where nothing is in between there is nothing to be tried.
+    let samples = select(0u, group_of.samples, hidden_by_mm > 0.0);
+    let radius = disc_radius(map, extent, to.axes_mm.z, hidden_by_mm);
+    var sum = 0.0;
+    for (var s = 0u; s < samples; s++) {
+        sum += lit_share(map, to, to.uv + radius * disc(r2_point(s, shift)));
+    }
+    return select(1.0, sum / f32(group_of.samples), samples > 0u);
+}
+
+fn receiver(map: LightMap, point_mm: vec3f, normal: vec3f) -> Receiver {
+    let n = vec3f(dot(map.right, normal), dot(map.up, normal), dot(map.forward, normal));
+    let depth_mm = in_map_axes(map, point_mm).z;
+    let texel_mm = 2.0 * map_half_width_mm(map, depth_mm) / f32(textureDimensions(depths).x);
+    // Half a texel outwards: the surface may be curved, and the map holds flat triangles.
+    let axes_mm = in_map_axes(map, point_mm + normal * (0.5 * texel_mm));
+    let slope = min(length(n.xy) / max(abs(n.z), 1e-3), MAX_SLOPE);
+    // The last term is rounding.
+    return Receiver(axes_mm, map_uv(map, axes_mm), n, 0.5 * texel_mm * slope * READ_TEXELS + 2e-6 * depth_mm);
+}
+
+/// Radius on the map of the cone from a point to the light's disc, where something at `hidden_by_mm` cuts it.
+fn disc_radius(map: LightMap, extent: f32, depth_mm: f32, hidden_by_mm: f32) -> f32 {
+    let gap_mm = max(depth_mm - hidden_by_mm, 0.0);
+    if map.directional {
+        return 0.5 * extent * gap_mm / map.half_width;
+    }
+    return 0.5 * extent * gap_mm / (depth_mm * map_half_width_mm(map, hidden_by_mm));
+}
+
+/// Mean depth of what lies before the point, as seen from the light's disc; 0 if nothing does.
+fn blocker_depth_mm(map: LightMap, extent: f32, to: Receiver, shift: vec2f) -> f32 {
+    let radius = disc_radius(map, extent, to.axes_mm.z, map.near_mm);
+    var sum_mm = 0.0;
+    var count = 0.0;
+    for (var s = 0u; s < select(0u, SEARCH_SAMPLES, extent > 0.0); s++) {
+        let uv = to.uv + radius * disc(r2_point(s, shift));
+        let texel = vec2i(uv * vec2f(textureDimensions(depths)));
+        let depth_mm = textureLoad(depths, texel, map.layer, 0).x;
+        if depth_mm < plane_depth_mm(map, to, uv) - to.bias_mm && inside(uv) {
+            sum_mm += depth_mm;
+            count += 1.0;
+        }
+    }
+    return select(0.0, sum_mm / max(count, 1.0), count > 0.0);
+}
+
+/// Depth of the point's tangent plane elsewhere on the map, if that is nearer to the light than the point, mm.
+fn plane_depth_mm(map: LightMap, to: Receiver, uv: vec2f) -> f32 {
+    let place = vec2f(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y) * map.half_width;
+    var depth_mm = to.axes_mm.z;
+    if map.directional {
+        depth_mm += dot(to.normal.xy, to.axes_mm.xy - place) / min(to.normal.z, -1e-3);
+    } else {
+        depth_mm = dot(to.normal, to.axes_mm) / min(dot(to.normal, vec3f(place, 1.0)), -1e-3);
+    }
+    return clamp(depth_mm, map.near_mm, to.axes_mm.z);
+}
+
+fn inside(uv: vec2f) -> bool {
+    return all(uv >= vec2f(0.0)) && all(uv <= vec2f(1.0));
+}
+
+/// Share of the four texels around a place that do not hide the point.
+fn lit_share(map: LightMap, to: Receiver, uv: vec2f) -> f32 {
+    let place = uv * vec2f(textureDimensions(depths)) - 0.5;
+    let f = fract(place);
+    let corner = vec2i(floor(place));
+    let limit_mm = plane_depth_mm(map, to, uv) - to.bias_mm;
+    let upper = mix(lit(map, corner, limit_mm), lit(map, corner + vec2i(1, 0), limit_mm), f.x);
+    let lower = mix(lit(map, corner + vec2i(0, 1), limit_mm), lit(map, corner + vec2i(1, 1), limit_mm), f.x);
+    return select(1.0, mix(upper, lower, f.y), inside(uv));
+}
+
+fn lit(map: LightMap, texel: vec2i, limit_mm: f32) -> f32 {
+    let clamped = clamp(texel, vec2i(0), vec2i(textureDimensions(depths)) - 1);
+    return select(0.0, 1.0, textureLoad(depths, clamped, map.layer, 0).x >= limit_mm);
+}

@@ -1,0 +1,145 @@
+//! Pipelines: shader, targets and how to bind what the shader reads.
+
+use crate::Gpu;
+
+/// What a pipeline is made from.
+#[derive(Debug, Clone, Copy)]
+pub struct Blueprint<'a> {
+    /// Name of the pass.
+    pub name: &'static str,
+    /// WGSL.
+    pub source: &'a str,
+    /// Entry points of the vertex and the fragment shader.
+    pub entries: [&'a str; 2],
+    /// Formats that are drawn into.
+    pub targets: &'a [wgpu::TextureFormat],
+    /// Whether what is drawn is added to what is there.
+    pub additive: bool,
+    /// Whether the nearest surface wins.
+    pub depth: bool,
+}
+
+/// A render pipeline; its bind group layouts are those of its shader.
+#[derive(Debug, Clone)]
+pub struct Pipeline {
+    /// Name of the pass.
+    pub name: &'static str,
+    /// The pipeline itself.
+    pub raw: wgpu::RenderPipeline,
+}
+
+/// Format of all depth buffers.
+pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+
+const ADD: wgpu::BlendComponent = wgpu::BlendComponent {
+    src_factor: wgpu::BlendFactor::One,
+    dst_factor: wgpu::BlendFactor::One,
+    operation: wgpu::BlendOperation::Add,
+};
+
+impl Pipeline {
+    /// Compiles a pipeline.
+    pub fn new(gpu: &Gpu, blueprint: &Blueprint) -> Self {
+        let Blueprint { name, source, entries, targets, additive, depth } = *blueprint;
+        let module = shader(gpu, name, source);
+        let blend = additive.then_some(wgpu::BlendState { color: ADD, alpha: ADD });
+        let targets: Vec<_> = targets
+            .iter()
+            .map(|&format| Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL }))
+            .collect();
+        let depth_stencil = depth.then(|| wgpu::DepthStencilState {
+            format: DEPTH,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::LessEqual),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        });
+        let raw = gpu.device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(name),
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some(entries[0]),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(entries[1]),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        Self { name, raw }
+    }
+
+    /// Binds what the shader reads, by the numbers it uses.
+    pub fn bind(&self, gpu: &Gpu, group: u32, bound: &[(u32, Bound)]) -> wgpu::BindGroup {
+        bind(gpu, self.name, &self.raw.get_bind_group_layout(group), bound)
+    }
+}
+
+/// A compute pipeline.
+#[derive(Debug, Clone)]
+pub struct ComputePipeline {
+    /// Name of the pass.
+    pub name: &'static str,
+    /// The pipeline itself.
+    pub raw: wgpu::ComputePipeline,
+}
+
+impl ComputePipeline {
+    /// Compiles a pipeline.
+    pub fn new(gpu: &Gpu, name: &'static str, source: &str, entry: &str) -> Self {
+        let raw = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(name),
+            layout: None,
+            module: &shader(gpu, name, source),
+            entry_point: Some(entry),
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        Self { name, raw }
+    }
+
+    /// Binds what the shader reads and writes, by the numbers it uses.
+    pub fn bind(&self, gpu: &Gpu, bound: &[(u32, Bound)]) -> wgpu::BindGroup {
+        bind(gpu, self.name, &self.raw.get_bind_group_layout(0), bound)
+    }
+}
+
+/// Something a shader reads.
+#[derive(Debug, Clone, Copy)]
+pub enum Bound<'a> {
+    /// A uniform struct or an array.
+    Buffer(&'a wgpu::Buffer),
+    /// A texture.
+    Texture(&'a wgpu::TextureView),
+    /// How textures are read.
+    Sampler(&'a wgpu::Sampler),
+}
+
+fn bind(gpu: &Gpu, label: &str, layout: &wgpu::BindGroupLayout, bound: &[(u32, Bound)]) -> wgpu::BindGroup {
+    let entries: Vec<_> = bound
+        .iter()
+        .map(|&(binding, bound)| {
+            let resource = match bound {
+                Bound::Buffer(buffer) => buffer.as_entire_binding(),
+                Bound::Texture(view) => wgpu::BindingResource::TextureView(view),
+                Bound::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
+            };
+            wgpu::BindGroupEntry { binding, resource }
+        })
+        .collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+}
+
+fn shader(gpu: &Gpu, label: &str, source: &str) -> wgpu::ShaderModule {
+    let source = wgpu::ShaderSource::Wgsl(source.into());
+    gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source })
+}

@@ -1,0 +1,70 @@
+//! From textures back to numbers.
+
+use crate::map::Map;
+use crate::{Gpu, GpuError};
+use glam::Vec4;
+use half::f16;
+use wgpu::TextureFormat as Format;
+
+/// All texels of one layer, row by row. Channels that the format lacks are 0.
+///
+/// # Errors
+/// If the device is lost.
+///
+/// # Panics
+/// If the format is none of those that passes draw into.
+pub fn read_layer(gpu: &Gpu, map: &Map, layer: u32) -> Result<Vec<Vec4>, GpuError> {
+    let format = map.texture.format();
+    let texel_bytes = format.block_copy_size(None).expect("no format here is compressed") as usize;
+    let row_bytes = map.width() as usize * texel_bytes;
+    // Rows in a buffer begin at multiples of this.
+    let pitch = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read back"),
+        size: (pitch * map.height() as usize) as u64,
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    copy(gpu, map, layer, &buffer, pitch);
+    let bytes = mapped(gpu, &buffer)?;
+    let rows = bytes.chunks_exact(pitch);
+    Ok(rows.flat_map(|row| row[..row_bytes].chunks_exact(texel_bytes).map(|t| texel(format, t))).collect())
+}
+
+fn copy(gpu: &Gpu, map: &Map, layer: u32, buffer: &wgpu::Buffer, pitch: usize) {
+    let mut source = map.texture.as_image_copy();
+    source.origin.z = layer;
+    let layout =
+        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch as u32), rows_per_image: None };
+    let size = wgpu::Extent3d { depth_or_array_layers: 1, ..map.texture.size() };
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_texture_to_buffer(source, wgpu::TexelCopyBufferInfo { buffer, layout }, size);
+    gpu.queue.submit([encoder.finish()]);
+}
+
+/// Waits for a buffer and copies what it holds.
+///
+/// # Errors
+/// If the device is lost.
+pub fn mapped(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, GpuError> {
+    let lost = |reason: String| GpuError::Lost { reason };
+    buffer.map_async(wgpu::MapMode::Read, .., |_| {});
+    gpu.wait()?;
+    let bytes = buffer.get_mapped_range(..).map_err(|e| lost(e.to_string()))?.to_vec();
+    buffer.unmap();
+    Ok(bytes)
+}
+
+fn texel(format: Format, bytes: &[u8]) -> Vec4 {
+    let half = |i: usize| f16::from_le_bytes([bytes[2 * i], bytes[2 * i + 1]]).to_f32();
+    let float = |i: usize| f32::from_le_bytes([0, 1, 2, 3].map(|b| bytes[4 * i + b]));
+    match format {
+        Format::Rgba16Float => Vec4::from_array([0, 1, 2, 3].map(half)),
+        Format::Rg16Float => Vec4::new(half(0), half(1), 0.0, 0.0),
+        // Bits that are no numbers pass through unharmed.
+        Format::Rgba32Float | Format::Rgba32Uint => Vec4::from_array([0, 1, 2, 3].map(float)),
+        Format::R32Float => Vec4::new(float(0), 0.0, 0.0, 0.0),
+        Format::Rgba8Unorm => Vec4::from_array([0, 1, 2, 3].map(|i| f32::from(bytes[i]) / 255.0)),
+        other => unreachable!("no pass draws {other:?} for anyone to read"),
+    }
+}

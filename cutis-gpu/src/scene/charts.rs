@@ -1,0 +1,98 @@
+//! Charts as shaders read them, and the tiles of a map that they cover.
+
+use crate::Gpu;
+use crate::map::Map;
+use crate::passes::TILE_TEXELS;
+use cutis_render::passes::atlas::{Atlas, ChartMap, NO_CHART};
+
+/// Texels of a chart that are counted to either side at most.
+const MAX_REACH: u16 = 255;
+/// In place of a chart: none.
+const NO_CODE: u16 = u16::MAX;
+
+/// Which chart every texel of a map belongs to.
+#[derive(Debug, Clone)]
+pub struct ChartTexture {
+    /// Width and height in texels.
+    pub size: u32,
+    /// Chart in the first channel, reaches in the second.
+    pub map: Map,
+    /// Runs of tiles with at least one texel of a chart; see `lib/tiles.wgsl`.
+    pub tiles: wgpu::Buffer,
+    /// Number of those runs.
+    pub runs: u32,
+}
+
+impl ChartTexture {
+    /// Uploads a map of charts.
+    pub fn new(gpu: &Gpu, charts: &ChartMap) -> Self {
+        let size = charts.size as u32;
+        let texels = charts.chart.iter().zip(&charts.reach_u).zip(&charts.reach_v);
+        let codes = texels
+            .flat_map(|((&chart, &u), &v)| [chart_code(chart), u.min(MAX_REACH) | v.min(MAX_REACH) << 8]);
+        let bytes: Vec<u8> = codes.flat_map(u16::to_le_bytes).collect();
+        let map = Map::filled(gpu, "charts", [size, size], wgpu::TextureFormat::Rg16Uint, &bytes);
+        let runs = runs(charts);
+        let mut tiles = vec![size];
+        tiles.extend(&runs);
+        Self { size, map, tiles: gpu.storage("tiles", &tiles), runs: runs.len() as u32 }
+    }
+}
+
+/// A chart's number in 16 bits. Of more than 65535 charts some share a number: only neighbours in the texture could notice.
+pub fn chart_code(chart: u32) -> u16 {
+    if chart == NO_CHART { NO_CODE } else { (chart % u32::from(NO_CODE)) as u16 }
+}
+
+/// First column, end column and row of every run of tiles that hold a texel of a chart.
+fn runs(charts: &ChartMap) -> Vec<u32> {
+    let tiles = charts.size.div_ceil(TILE_TEXELS);
+    let covered = |column: usize, row: usize| {
+        let ys = row * TILE_TEXELS..((row + 1) * TILE_TEXELS).min(charts.size);
+        let xs = column * TILE_TEXELS..((column + 1) * TILE_TEXELS).min(charts.size);
+        ys.into_iter()
+            .any(|y| charts.chart[y * charts.size..][xs.clone()].iter().any(|&chart| chart != NO_CHART))
+    };
+    let mut runs = Vec::new();
+    for row in 0..tiles {
+        let mut column = 0;
+        while column < tiles {
+            let end = (column..tiles).find(|&c| !covered(c, row)).unwrap_or(tiles);
+            if end > column {
+                runs.push((row << 20 | end << 10 | column) as u32);
+            }
+            column = end + 1;
+        }
+    }
+    runs
+}
+
+/// The triangle under every texel of the atlas, as `passes/atlas.wgsl` reads it.
+pub fn surface_texture(gpu: &Gpu, atlas: &Atlas) -> Map {
+    let size = atlas.size as u32;
+    let sixteen_bits = |x: f32| (x.clamp(0.0, 1.0) * 65535.0).round() as u32;
+    let words =
+        atlas.surface.iter().flat_map(|s| [s.triangle, sixteen_bits(s.b1) | sixteen_bits(s.b2) << 16]);
+    let bytes: Vec<u8> = words.flat_map(u32::to_le_bytes).collect();
+    Map::filled(gpu, "surface", [size, size], wgpu::TextureFormat::Rg32Uint, &bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_cover_every_chart_and_little_else() {
+        let size = 64;
+        // One texel in the second tile of the first row, and a bar through the last row of tiles.
+        let chart = |i: usize| if i == 5 * size + 20 || i / size == 50 { 3 } else { NO_CHART };
+        let charts = ChartMap::new(size, (0..size * size).map(chart).collect());
+        assert_eq!(runs(&charts), [2 << 10 | 1, 3 << 20 | 4 << 10]);
+    }
+
+    #[test]
+    fn no_chart_is_no_number_of_a_chart() {
+        assert_eq!(chart_code(NO_CHART), NO_CODE);
+        assert_ne!(chart_code(u32::from(NO_CODE)), NO_CODE);
+    }
+}

@@ -1,0 +1,106 @@
+//! Layers beside the picture, drawn when they are asked for.
+
+use super::GpuScene;
+use super::object::ObjectMaps;
+use crate::map::Map;
+use crate::passes::Passes;
+use crate::passes::diffusion::Level;
+use crate::passes::resolve::{Canvas, LAYER, LayerKind};
+use crate::readback::read_layer;
+use crate::{Gpu, GpuError};
+use cutis_render::{Aov, AovSpace, Layer};
+use glam::Vec4;
+
+impl GpuScene {
+    /// Layers of the frame that was drawn last. Those that do not exist are left out.
+    ///
+    /// # Errors
+    /// If the device is lost.
+    pub fn layers(
+        &self,
+        gpu: &Gpu,
+        passes: &Passes,
+        aovs: &[Aov],
+        space: AovSpace,
+    ) -> Result<Vec<Layer>, GpuError> {
+        let mut layers = Vec::new();
+        for &aov in aovs {
+            layers.extend(match space {
+                AovSpace::Picture => Some(self.seen_layer(gpu, passes, aov)?),
+                AovSpace::Texture => self.texture_layer(gpu, aov)?,
+            });
+        }
+        Ok(layers)
+    }
+
+    /// A layer through the camera.
+    fn seen_layer(&self, gpu: &Gpu, passes: &Passes, aov: Aov) -> Result<Layer, GpuError> {
+        let size = [self.pixels.width(), self.pixels.height()];
+        let samples = Map::new(gpu, "samples of a layer", size.map(|s| s * self.grid), 1, LAYER);
+        let pixels = Map::new(gpu, "layer", size, 1, LAYER);
+        let mut steps = Vec::new();
+        for (i, maps) in self.objects.iter().enumerate() {
+            let Some((kind, level)) = self.source(maps, aov) else { continue };
+            let clear = Some(wgpu::Color::TRANSPARENT);
+            let canvas = Canvas { samples: &samples, depth: &self.depth, clear, first: i == 0 };
+            let inputs = maps.resolve_inputs(passes, &self.shared);
+            steps.push(passes.resolve.layer_step(gpu, &inputs, kind, &level, &canvas));
+        }
+        steps.push(passes.downsample.step(gpu, self.grid, &samples, &pixels));
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        steps.iter().for_each(|step| step.encode(&mut encoder, None));
+        gpu.queue.submit([encoder.finish()]);
+        Ok(layer(aov, size, read_layer(gpu, &pixels, 0)?))
+    }
+
+    /// What a layer shows, and the level it is read from. `None` if there is nothing to show.
+    fn source(&self, maps: &ObjectMaps, aov: Aov) -> Option<(LayerKind, Level)> {
+        let levels = &maps.levels.all;
+        let level = |i: usize| levels[i.min(levels.len() - 1)].clone();
+        let kind = match aov {
+            Aov::Irradiance => LayerKind::Level,
+            Aov::Blur(i) => return Some((LayerKind::Level, level(usize::from(i) + 1))),
+            Aov::Stretch => return Some((LayerKind::Stretch, maps.stretch_level())),
+            Aov::Thickness if self.shared.light_count > 1 => LayerKind::Distances,
+            Aov::Thickness => LayerKind::DistanceOfOne,
+            Aov::Normal => LayerKind::Normal,
+            Aov::Albedo => LayerKind::Albedo,
+            Aov::Specular => LayerKind::Specular,
+            Aov::Transmission => LayerKind::Transmission,
+            Aov::Diffuse => LayerKind::Diffuse,
+            Aov::Exitance => LayerKind::Exitance,
+            Aov::Charts => LayerKind::Charts,
+            // Nothing here is left to chance.
+            Aov::StandardError => return None,
+        };
+        Some((kind, level(0)))
+    }
+
+    /// A pass's own texture, of the first object. `None` for layers that exist only in the picture.
+    fn texture_layer(&self, gpu: &Gpu, aov: Aov) -> Result<Option<Layer>, GpuError> {
+        let Some(maps) = self.objects.first() else { return Ok(None) };
+        let levels = &maps.levels.all;
+        let many = self.shared.light_count > 1;
+        let (map, texture_layer) = match aov {
+            Aov::Irradiance => (&levels[0].light, 0),
+            Aov::Blur(i) => match levels.get(usize::from(i) + 1) {
+                Some(level) => (&level.light, 0),
+                None => return Ok(None),
+            },
+            Aov::Thickness => (&levels[0].light, u32::from(many)),
+            Aov::Stretch => (&maps.atlas.stretch, 0),
+            _ => return Ok(None),
+        };
+        let mut pixels = read_layer(gpu, map, texture_layer)?;
+        match aov {
+            Aov::Thickness if !many => pixels.iter_mut().for_each(|p| *p = Vec4::new(p.w, 0.0, 0.0, 0.0)),
+            Aov::Stretch => pixels.iter_mut().for_each(|p| *p = Vec4::new(p.x, p.y, 0.0, 0.0)),
+            _ => {}
+        }
+        Ok(Some(layer(aov, [map.width(), map.height()], pixels)))
+    }
+}
+
+fn layer(aov: Aov, [width, height]: [u32; 2], pixels: Vec<Vec4>) -> Layer {
+    Layer { name: aov.to_string(), width, height, channels: aov.channels(), pixels }
+}

@@ -1,0 +1,284 @@
+//! One object: its mesh and textures, and the steps that fill them.
+
+use super::charts::{ChartTexture, surface_texture};
+use super::geometry::Geometry;
+use super::material::MaterialMaps;
+use super::shared::Shared;
+use crate::map::Map;
+use crate::passes::atlas::AtlasMaps;
+use crate::passes::diffusion::{Level, Levels};
+use crate::passes::irradiance::IrradianceInputs;
+use crate::passes::resolve::ResolveInputs;
+use crate::passes::shares::ShareGroup;
+use crate::passes::transmission::TransmissionInputs;
+use crate::passes::visibility::{Group, visibility_map};
+use crate::passes::{LIGHTS_TOGETHER, Passes};
+use crate::step::Step;
+use crate::{Gpu, GpuError};
+use bytemuck::Zeroable;
+use cutis_render::passes::ambient::Ambient;
+use cutis_render::passes::atlas::Atlas;
+use cutis_render::passes::diffusion::{Action, median_texel_mm, plan};
+use cutis_render::passes::stretch::stretch_mm_per_texel;
+use cutis_render::passes::transmission::smoothing_steps;
+use cutis_render::prepare::rho_dt::{COSINES, ROUGHNESSES};
+use cutis_render::prepare::{Kernel, RhoDt};
+use cutis_render::technique::texture_space::opaque_mm;
+use cutis_scene::Object;
+use glam::Vec4;
+use wgpu::TextureFormat as Format;
+
+/// Finest maps that occlusion is kept in: a quarter as wide as the irradiance.
+const AMBIENT_HALVINGS: usize = 2;
+
+/// What is computed once for an object, by cutis-render.
+#[derive(Debug)]
+pub struct Prepared {
+    /// The surface unrolled.
+    pub atlas: Atlas,
+    /// Texel size that half of the surface falls below, mm.
+    pub texel_mm: f32,
+    /// Diffusion kernel.
+    pub kernel: Kernel,
+    /// What the surface lets through.
+    pub rho_dt: RhoDt,
+}
+
+impl Prepared {
+    /// For an atlas of `size` texels.
+    pub fn new(object: &Object, size: u32, kernel: Kernel) -> Self {
+        let atlas = Atlas::new(object, size as usize);
+        let texel_mm = median_texel_mm(&atlas.charts, &stretch_mm_per_texel(object, &atlas));
+        Self { atlas, texel_mm, kernel, rho_dt: RhoDt::new(object.material.f0) }
+    }
+}
+
+/// An object's textures.
+#[derive(Debug)]
+pub struct ObjectMaps {
+    /// Its mesh.
+    pub geometry: Geometry,
+    /// Its diffusion kernel.
+    pub kernel: Kernel,
+    /// Its unrolled surface.
+    pub atlas: AtlasMaps,
+    /// The light before and after every Gaussian.
+    pub levels: Levels,
+    /// Fraction of each light that is seen.
+    pub visibility: Map,
+    /// Sum of all Gaussians.
+    pub local: Map,
+    /// Light that came through, at half the size.
+    pub transmission: Map,
+    charts: Vec<ChartTexture>,
+    material: MaterialMaps,
+    ambient: Map,
+    rho_dt: Map,
+}
+
+/// Steps of one object.
+#[derive(Debug, Default)]
+pub struct ObjectSteps {
+    /// When the geometry has changed.
+    pub surface: Vec<Step>,
+    /// In every frame, after the lights' maps.
+    pub light: Vec<Step>,
+}
+
+impl ObjectMaps {
+    /// Makes the textures of object number `number` and the steps that fill them.
+    ///
+    /// # Errors
+    /// If something is larger than the device takes.
+    pub fn new(
+        gpu: &Gpu,
+        passes: &Passes,
+        shared: &Shared,
+        number: u32,
+        object: &Object,
+        prepared: Prepared,
+        ambient: &Ambient,
+    ) -> Result<(Self, ObjectSteps), GpuError> {
+        let Prepared { atlas: unrolled, texel_mm, kernel, rho_dt } = prepared;
+        let size = unrolled.size as u32;
+        let plan = plan(unrolled.size, texel_mm, &kernel.variances_mm2);
+        tracing::debug!("plan of '{}' with texels of {texel_mm} mm: {plan:?}", object.name);
+        let charts = chart_textures(gpu, &unrolled, &plan);
+        let geometry = Geometry::new(gpu, object)?;
+        let material = MaterialMaps::new(gpu, &object.material)?;
+        let atlas = AtlasMaps::new(gpu, size);
+        let surface = surface_texture(gpu, &unrolled);
+        let mut steps = ObjectSteps::default();
+        steps.surface.push(passes.stretch.step(gpu, &geometry));
+        let samplers = &passes.samplers;
+        steps.surface.push(passes.atlas.step(
+            gpu,
+            samplers,
+            (&geometry, &material),
+            (&surface, &charts[0]),
+            &atlas,
+        ));
+        let mut maps = Self {
+            visibility: visibility_map(gpu, size, shared.light_count),
+            local: Map::square(gpu, "local", size, 1, Format::Rgba16Float),
+            transmission: Map::square(gpu, "transmission", size / 2, 1, Format::Rgba16Float),
+            ambient: ambient_texture(gpu, ambient),
+            rho_dt: rho_dt_texture(gpu, &rho_dt),
+            levels: Levels { all: Vec::new() },
+            geometry,
+            kernel,
+            atlas,
+            charts,
+            material,
+        };
+        let light = Lighting { gpu, passes, shared, number, maps: &maps };
+        let Lit { levels, shares } = light.steps(&plan, &mut steps);
+        maps.levels = levels;
+        steps.light.extend(passes.gather.steps(gpu, &maps.kernel, &maps.levels, maps.local.view()));
+        let inputs = TransmissionInputs {
+            object: number,
+            lights: &shared.lights,
+            kernel: &maps.kernel,
+            atlas: &maps.atlas,
+            half_charts: &maps.charts[1],
+            shadows: &shared.shadows,
+            shares: shares.as_ref(),
+            levels: &maps.levels,
+        };
+        let spare = Map::square(gpu, "transmission", size / 2, 1, Format::Rgba16Float);
+        let both = [maps.transmission.clone(), spare];
+        let (more, result) = passes.transmission.steps(gpu, &inputs, &smoothing_steps(2.0 * texel_mm), both);
+        steps.light.extend(more);
+        maps.transmission = result;
+        Ok((maps, steps))
+    }
+
+    /// What the final pass reads of this object.
+    pub fn resolve_inputs<'a>(&'a self, passes: &'a Passes, shared: &'a Shared) -> ResolveInputs<'a> {
+        ResolveInputs {
+            samplers: &passes.samplers,
+            camera: &shared.camera,
+            lights: &shared.lights,
+            environment: &shared.environment,
+            geometry: &self.geometry,
+            material: &self.material,
+            charts: [&self.charts[0], &self.charts[1], &self.charts[AMBIENT_HALVINGS]],
+            local: &self.local,
+            transmission: &self.transmission,
+            visibility: &self.visibility,
+            ambient: &self.ambient,
+            rho_dt: &self.rho_dt,
+        }
+    }
+
+    /// The stretch in the form of a level.
+    pub fn stretch_level(&self) -> Level {
+        Level { charts: self.charts[0].clone(), light: self.atlas.stretch.clone() }
+    }
+}
+
+/// From lights to blurred irradiance.
+struct Lighting<'a> {
+    gpu: &'a Gpu,
+    passes: &'a Passes,
+    shared: &'a Shared,
+    number: u32,
+    maps: &'a ObjectMaps,
+}
+
+/// Light in the textures.
+struct Lit {
+    levels: Levels,
+    shares: Option<Map>,
+}
+
+impl Lighting<'_> {
+    fn steps(&self, plan: &[Action], all: &mut ObjectSteps) -> Lit {
+        let steps = &mut all.light;
+        let Self { gpu, passes, shared, maps, .. } = *self;
+        let size = maps.charts[0].size;
+        let groups = shared.light_count.div_ceil(LIGHTS_TOGETHER) as u32;
+        let many = shared.light_count > 1;
+        let layers = if many { 1 + groups } else { 1 };
+        let light = Map::square(gpu, "irradiance", size, layers, Format::Rgba16Float);
+        // With several lights all distances live in further layers of the light, and this stays empty.
+        let distances = Map::square(gpu, "distance", if many { 1 } else { size }, 1, Format::Rgba16Float);
+        for group in 0..groups {
+            let target = if many { &light.layers[1 + group as usize] } else { distances.view() };
+            steps.push(self.visibility(group, target));
+        }
+        let inputs = IrradianceInputs {
+            samplers: &passes.samplers,
+            lights: &shared.lights,
+            material: &maps.material,
+            environment: &shared.environment,
+            atlas: &maps.atlas,
+            charts: &maps.charts[0],
+            visibility: &maps.visibility,
+            distances_mm: &distances,
+            ambient: (&maps.ambient, &maps.charts[AMBIENT_HALVINGS]),
+            rho_dt: &maps.rho_dt,
+        };
+        steps.push(passes.irradiance.step(gpu, &inputs, &light.layers[0]));
+        let shares = many.then(|| {
+            let shares = Map::square(gpu, "shares", size, groups, Format::Rgba16Float);
+            steps.extend((0..groups).map(|group| {
+                let first_light = group * LIGHTS_TOGETHER as u32;
+                let numbers = ShareGroup { first_light, ..ShareGroup::zeroed() };
+                passes.shares.step(gpu, numbers, &inputs, &shares.layers[group as usize])
+            }));
+            shares
+        });
+        let stretch = &maps.atlas.stretch;
+        let diffusion = passes.diffusion.steps(gpu, &maps.charts, &light, stretch, plan);
+        steps.extend(diffusion.blurs);
+        all.surface.extend(diffusion.taps);
+        Lit { levels: diffusion.levels, shares }
+    }
+
+    fn visibility(&self, group: u32, distances: &wgpu::TextureView) -> Step {
+        let Self { gpu, passes, shared, maps, .. } = *self;
+        let first = group as usize * LIGHTS_TOGETHER;
+        let numbers = Group {
+            first_light: first as u32,
+            light_count: (shared.light_count - first).min(LIGHTS_TOGETHER) as u32,
+            object: self.number,
+            samples: shared.shadow_samples,
+            opaque_mm: opaque_mm(&maps.kernel),
+            ..Group::zeroed()
+        };
+        let targets = [&maps.visibility.layers[group as usize], distances];
+        passes.visibility.step(
+            gpu,
+            numbers,
+            (&shared.lights, &shared.shadows),
+            &maps.atlas,
+            &maps.charts[0],
+            targets,
+        )
+    }
+}
+
+/// Charts of every size that is needed: by the plan, and by the map of occlusion.
+fn chart_textures(gpu: &Gpu, atlas: &Atlas, plan: &[Action]) -> Vec<ChartTexture> {
+    let halvings = plan.iter().filter(|action| **action == Action::Halve).count().max(AMBIENT_HALVINGS);
+    let mut charts = atlas.charts.as_ref().clone();
+    let mut textures = vec![ChartTexture::new(gpu, &charts)];
+    for _ in 0..halvings {
+        charts = charts.halved();
+        textures.push(ChartTexture::new(gpu, &charts));
+    }
+    textures
+}
+
+fn ambient_texture(gpu: &Gpu, ambient: &Ambient) -> Map {
+    let size = ambient.charts().size as u32;
+    Map::of_values(gpu, "openness", [size, size], ambient.map().iter().copied())
+}
+
+/// The table of rho_dt: the means over the hemisphere are one more column.
+fn rho_dt_texture(gpu: &Gpu, rho_dt: &RhoDt) -> Map {
+    let rows = rho_dt.albedos().chunks_exact(COSINES).zip(rho_dt.mean_albedos());
+    let texels = rows.flat_map(|(row, &mean)| row.iter().copied().chain([mean]).map(Vec4::splat));
+    Map::of_values(gpu, "rho_dt", [COSINES as u32 + 1, ROUGHNESSES as u32], texels)
+}

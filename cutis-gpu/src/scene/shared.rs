@@ -1,0 +1,85 @@
+//! What all objects of a scene share: lights and what they see, the environment, the camera.
+
+use super::camera::GpuCamera;
+use super::environment::EnvironmentMaps;
+use super::lights::{GpuLight, NO_MAP};
+use crate::passes::shadow::ShadowMaps;
+use crate::{Gpu, GpuError};
+use cutis_render::Settings;
+use cutis_render::prepare::FilteredEnvironment;
+use cutis_scene::Scene;
+
+/// Lights that get a shadow map; more would fill the memory of small adapters.
+pub const SHADOW_BUDGET: usize = 8;
+/// Largest and smallest side of a shadow map, texels.
+const SHADOW_SIZES: [u32; 2] = [256, 2048];
+/// Places on a light's disc that are tried at least: fewer leave grain in specular light.
+const MIN_SHADOW_SAMPLES: u32 = 16;
+
+/// Buffers and textures of the whole scene.
+#[derive(Debug)]
+pub struct Shared {
+    /// [`GpuLight`] of every light.
+    pub lights: wgpu::Buffer,
+    /// How many there are, at least one: a scene without has a dark one.
+    pub light_count: usize,
+    /// Layer of the maps of each light, if it has one.
+    pub layers: Vec<Option<u32>>,
+    /// What the lights see.
+    pub shadows: ShadowMaps,
+    /// The filtered environment.
+    pub environment: EnvironmentMaps,
+    /// [`GpuCamera`].
+    pub camera: wgpu::Buffer,
+    /// Places on a light's disc that are tried.
+    pub shadow_samples: u32,
+    /// Lights that cast no shadow, in words.
+    pub warnings: Vec<String>,
+}
+
+impl Shared {
+    /// Uploads what a scene's objects share.
+    ///
+    /// # Errors
+    /// If the environment is larger than the device takes.
+    pub fn new(
+        gpu: &Gpu,
+        scene: &Scene,
+        settings: &Settings,
+        filtered: Option<&FilteredEnvironment>,
+    ) -> Result<Self, GpuError> {
+        let lights = gpu_lights(scene);
+        let layers: Vec<_> = lights.iter().map(|l| (l.map_layer != NO_MAP).then_some(l.map_layer)).collect();
+        let [smallest, largest] = SHADOW_SIZES;
+        let size = settings.irradiance_size.clamp(smallest, largest);
+        let aspect = settings.width as f32 / settings.height as f32;
+        Ok(Self {
+            light_count: lights.len().max(1),
+            shadows: ShadowMaps::new(gpu, size, layers.iter().flatten().count() as u32),
+            environment: EnvironmentMaps::new(gpu, filtered)?,
+            camera: gpu.uniform("camera", &GpuCamera::of_scene(scene, aspect)),
+            shadow_samples: settings.shadow_samples.max(MIN_SHADOW_SAMPLES),
+            warnings: warnings(&layers),
+            lights: gpu.storage("lights", &lights),
+            layers,
+        })
+    }
+}
+
+/// The scene's lights; the first ones have maps, in layers without gaps.
+pub fn gpu_lights(scene: &Scene) -> Vec<GpuLight> {
+    let mut next = 0;
+    let light = |light| {
+        let layer = (next < SHADOW_BUDGET as u32).then_some(next);
+        let light = GpuLight::new(light, &scene.objects, layer);
+        next += u32::from(light.map_layer != NO_MAP);
+        light
+    };
+    scene.lights.iter().map(light).collect()
+}
+
+fn warnings(layers: &[Option<u32>]) -> Vec<String> {
+    let without = layers.iter().enumerate().filter(|(_, layer)| layer.is_none());
+    let why = "it stands within the scene or too close to it, or there are more lights than maps";
+    without.map(|(l, _)| format!("light {} casts no shadow on the GPU: {why}", l + 1)).collect()
+}

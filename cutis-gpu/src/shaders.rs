@@ -1,0 +1,111 @@
+//! The WGSL of every pass, put together from the pass's own file and the shared ones it needs.
+
+macro_rules! wgsl {
+    ($($file:literal),+ $(,)?) => { concat!($(include_str!($file), "\n"),+) };
+}
+
+/// Pass `stretch`.
+pub const STRETCH: &str = wgsl!("lib/mesh.wgsl", "passes/stretch.wgsl");
+/// Pass `atlas`.
+pub const ATLAS: &str = wgsl!(
+    "lib/tiles.wgsl",
+    "lib/mesh.wgsl",
+    "lib/packing.wgsl",
+    "lib/material.wgsl",
+    "lib/relief.wgsl",
+    "passes/atlas.wgsl"
+);
+/// Pass `shadow map`.
+pub const SHADOW: &str =
+    wgsl!("lib/mesh.wgsl", "lib/lights.wgsl", "lib/light_map.wgsl", "passes/shadow.wgsl");
+/// Pass `shadows`.
+pub const VISIBILITY: &str = wgsl!(
+    "lib/tiles.wgsl",
+    "lib/charts.wgsl",
+    "lib/packing.wgsl",
+    "lib/lights.wgsl",
+    "lib/light_map.wgsl",
+    "lib/sampling.wgsl",
+    "lib/translucent.wgsl",
+    "passes/visibility.wgsl"
+);
+/// Pass `irradiance`.
+pub const IRRADIANCE: &str = wgsl!(
+    "lib/tiles.wgsl",
+    "lib/charts.wgsl",
+    "lib/packing.wgsl",
+    "lib/lights.wgsl",
+    "lib/material.wgsl",
+    "lib/rho_dt.wgsl",
+    "lib/environment.wgsl",
+    "passes/irradiance.wgsl"
+);
+/// Pass `shares`.
+pub const SHARES: &str = wgsl!(
+    "lib/tiles.wgsl",
+    "lib/packing.wgsl",
+    "lib/lights.wgsl",
+    "lib/material.wgsl",
+    "lib/rho_dt.wgsl",
+    "passes/shares.wgsl"
+);
+/// Pass `taps`.
+pub const TAPS: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "passes/taps.wgsl");
+/// Pass `blur`: one step along one axis.
+pub const BLUR: &str = wgsl!("lib/tiles.wgsl", "passes/blur.wgsl");
+/// Pass `blur`: to half the size.
+pub const HALVE: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "passes/halve.wgsl");
+/// Pass `gather`.
+pub const GATHER: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "lib/levels.wgsl", "passes/gather.wgsl");
+/// Pass `transmission`.
+pub const TRANSMISSION: &str = wgsl!(
+    "lib/tiles.wgsl",
+    "lib/charts.wgsl",
+    "lib/packing.wgsl",
+    "lib/lights.wgsl",
+    "lib/light_map.wgsl",
+    "lib/translucent.wgsl",
+    "lib/levels.wgsl",
+    "passes/transmission.wgsl"
+);
+/// Pass `transmission`: smoothing.
+pub const SMOOTH: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "passes/smooth.wgsl");
+/// Pass `resolve`.
+pub const RESOLVE: &str = wgsl!(
+    "lib/mesh.wgsl",
+    "lib/charts.wgsl",
+    "lib/packing.wgsl",
+    "lib/lights.wgsl",
+    "lib/material.wgsl",
+    "lib/relief.wgsl",
+    "lib/rho_dt.wgsl",
+    "lib/specular.wgsl",
+    "lib/environment.wgsl",
+    "lib/camera.wgsl",
+    "lib/see.wgsl",
+    "passes/resolve.wgsl",
+    "passes/layer.wgsl"
+);
+/// Pass `resolve`: what lies behind everything.
+pub const SKY: &str = wgsl!("lib/mesh.wgsl", "lib/camera.wgsl", "lib/environment.wgsl", "passes/sky.wgsl");
+/// Pass `downsample`.
+pub const DOWNSAMPLE: &str = wgsl!("passes/downsample.wgsl");
+
+/// All of them by name.
+pub const ALL: [(&str, &str); 15] = [
+    ("stretch", STRETCH),
+    ("atlas", ATLAS),
+    ("shadow", SHADOW),
+    ("visibility", VISIBILITY),
+    ("irradiance", IRRADIANCE),
+    ("shares", SHARES),
+    ("taps", TAPS),
+    ("blur", BLUR),
+    ("halve", HALVE),
+    ("gather", GATHER),
+    ("transmission", TRANSMISSION),
+    ("smooth", SMOOTH),
+    ("resolve", RESOLVE),
+    ("sky", SKY),
+    ("downsample", DOWNSAMPLE),
+];

@@ -1,0 +1,116 @@
+//! What a frame consists of: steps that were prepared once and are encoded every time.
+
+use crate::timing::Stamps;
+
+/// Most targets of a draw.
+const MAX_TARGETS: usize = 3;
+
+/// One step of a frame.
+#[derive(Debug)]
+pub enum Step {
+    /// Something is drawn.
+    Draw(Draw),
+    /// Something is computed.
+    Compute(Dispatch),
+}
+
+/// A draw into some textures.
+#[derive(Debug)]
+pub struct Draw {
+    /// Name of the pass it belongs to.
+    pub pass: &'static str,
+    /// How it is drawn.
+    pub pipeline: wgpu::RenderPipeline,
+    /// What is read.
+    pub bind_groups: Vec<wgpu::BindGroup>,
+    /// What is drawn into.
+    pub targets: Vec<wgpu::TextureView>,
+    /// The depth buffer, if there is one, and whether it is emptied before.
+    pub depth: Option<(wgpu::TextureView, bool)>,
+    /// What the targets hold before; none: what they held.
+    pub clear: Option<wgpu::Color>,
+    /// Vertices of an instance.
+    pub vertices: u32,
+    /// Instances.
+    pub instances: u32,
+}
+
+/// A computation.
+#[derive(Debug)]
+pub struct Dispatch {
+    /// Name of the pass it belongs to.
+    pub pass: &'static str,
+    /// How it is computed.
+    pub pipeline: wgpu::ComputePipeline,
+    /// What is read and written.
+    pub bind_group: wgpu::BindGroup,
+    /// Groups of invocations.
+    pub groups: u32,
+}
+
+impl Step {
+    /// Name of the pass it belongs to.
+    pub fn pass(&self) -> &'static str {
+        match self {
+            Step::Draw(draw) => draw.pass,
+            Step::Compute(dispatch) => dispatch.pass,
+        }
+    }
+
+    /// Writes the step into the commands of a frame; `stamps` are where its beginning and end are noted.
+    pub fn encode(&self, encoder: &mut wgpu::CommandEncoder, stamps: Option<Stamps>) {
+        match self {
+            Step::Draw(draw) => draw.encode(encoder, stamps),
+            Step::Compute(dispatch) => dispatch.encode(encoder, stamps),
+        }
+    }
+}
+
+impl Draw {
+    fn encode(&self, encoder: &mut wgpu::CommandEncoder, stamps: Option<Stamps>) {
+        let load = self.clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear);
+        let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
+        let attachment = |view| {
+            Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
+        };
+        let mut targets = [const { None }; MAX_TARGETS];
+        targets.iter_mut().zip(&self.targets).for_each(|(slot, view)| *slot = attachment(view));
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some(self.pass),
+            color_attachments: &targets[..self.targets.len()],
+            depth_stencil_attachment: self.depth.as_ref().map(|(view, clear)| {
+                let load = if *clear { wgpu::LoadOp::Clear(1.0) } else { wgpu::LoadOp::Load };
+                let depth_ops = Some(wgpu::Operations { load, store: wgpu::StoreOp::Store });
+                wgpu::RenderPassDepthStencilAttachment { view, depth_ops, stencil_ops: None }
+            }),
+            timestamp_writes: stamps.map(|s| wgpu::RenderPassTimestampWrites {
+                query_set: s.queries,
+                beginning_of_pass_write_index: Some(s.first),
+                end_of_pass_write_index: Some(s.first + 1),
+            }),
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        pass.set_pipeline(&self.pipeline);
+        for (group, bound) in (0..).zip(&self.bind_groups) {
+            pass.set_bind_group(group, bound, &[]);
+        }
+        pass.draw(0..self.vertices, 0..self.instances);
+    }
+}
+
+impl Dispatch {
+    fn encode(&self, encoder: &mut wgpu::CommandEncoder, stamps: Option<Stamps>) {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some(self.pass),
+            timestamp_writes: stamps.map(|s| wgpu::ComputePassTimestampWrites {
+                query_set: s.queries,
+                beginning_of_pass_write_index: Some(s.first),
+                end_of_pass_write_index: Some(s.first + 1),
+            }),
+        });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.bind_group, &[]);
+        pass.dispatch_workgroups(self.groups, 1, 1);
+    }
+}

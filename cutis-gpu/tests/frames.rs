@@ -1,0 +1,96 @@
+//! Whole frames on both backends: radiance, and the layers that add up to it.
+
+mod common;
+
+use common::tolerances::{self, Tolerance};
+use common::{difference, head_in_the_studio, patch, patch_under_a_spot, renderer, scanned_head};
+use cutis_render::{Aov, CpuRenderer, Renderer, Settings, Silent};
+use cutis_scene::{Light, Scene};
+use glam::Vec3;
+
+fn settings() -> Settings {
+    Settings {
+        width: 160,
+        height: 160,
+        irradiance_size: 512,
+        samples_per_pixel: 9,
+        shadow_samples: 16,
+        aovs: vec![Aov::Normal, Aov::Albedo, Aov::Diffuse, Aov::Specular],
+        ..Settings::default()
+    }
+}
+
+/// Draws a scene on both and compares what is covered in both.
+fn same_on_both(test: &str, scene: &Scene, settings: &Settings, allowed: Tolerance) {
+    let Some(renderer) = renderer(test) else { return };
+    let cpu = CpuRenderer.render(scene, settings, &Silent).expect("draws");
+    let gpu = renderer.render(scene, settings, &Silent).expect("draws");
+    let covered = |i: usize| cpu.pixels[i].w > 0.99 && gpu.pixels[i].w > 0.99;
+    let coverage = |frame: &cutis_render::Frame| frame.pixels.iter().map(|p| p.w).sum::<f32>();
+    let change = coverage(&gpu) / coverage(&cpu) - 1.0;
+    assert!(change.abs() < 0.01, "{test}: coverage differs by {change}");
+    difference(&gpu.pixels, &cpu.pixels, covered).check(test, allowed);
+    for (g, c) in gpu.layers.iter().zip(&cpu.layers) {
+        let drawn = |i: usize| covered(i) && c.pixels[i].w > 0.99 && g.pixels[i].w > 0.99;
+        let allowed = match g.name.as_str() {
+            "specular" => tolerances::SHINE,
+            "diffuse" => tolerances::DIFFUSE,
+            _ => tolerances::SURFACE,
+        };
+        difference(&g.pixels, &c.pixels, drawn).check(&format!("{test}, {}", g.name), allowed);
+    }
+}
+
+#[test]
+fn the_built_in_head() {
+    same_on_both("the_built_in_head", &head_in_the_studio(), &settings(), tolerances::HEAD);
+}
+
+#[test]
+fn three_lights_and_the_environment() {
+    let mut scene = head_in_the_studio();
+    scene.lights.push(Light::Directional {
+        dir_to_light: Vec3::new(-0.8, 0.3, -0.5).normalize(),
+        irradiance_w_per_m2: Vec3::new(1.0, 1.5, 2.0),
+        angular_radius_rad: 0.02,
+    });
+    same_on_both("three_lights_and_the_environment", &scene, &settings(), tolerances::THREE_LIGHTS);
+}
+
+#[test]
+fn a_flat_patch() {
+    let scene = patch_under_a_spot(patch(|u| 40.0 * u, |v| 40.0 * v));
+    same_on_both("a_flat_patch", &scene, &settings(), tolerances::PATCH);
+}
+
+#[test]
+fn a_stretched_patch() {
+    let scene = patch_under_a_spot(patch(|u| 60.0 * u, |v| 20.0 * (v + 0.03 * (12.0 * v).sin())));
+    same_on_both("a_stretched_patch", &scene, &settings(), tolerances::PATCH);
+}
+
+#[test]
+fn the_scanned_head() {
+    let Some(scene) = scanned_head("the_scanned_head") else { return };
+    same_on_both("the_scanned_head", &scene, &settings(), tolerances::SCAN);
+}
+
+#[test]
+fn drawing_again_gives_the_same_and_a_moved_camera_another() {
+    let Some(renderer) = renderer("drawing_again_gives_the_same_and_a_moved_camera_another") else { return };
+    let scene = head_in_the_studio();
+    let small = Settings { width: 48, height: 48, irradiance_size: 128, ..Settings::default() };
+    let ready = renderer.scene(&scene, &small, &Silent).expect("is uploaded");
+    let picture = || {
+        ready.draw(&renderer.gpu);
+        ready.picture(&renderer.gpu).expect("is drawn")
+    };
+    let first = picture();
+    assert_eq!(first, picture(), "nothing is left of the frame before");
+    let mut camera = scene.camera;
+    camera.position_mm.x += 100.0;
+    ready.set_camera(&renderer.gpu, &camera);
+    assert_ne!(first, picture());
+    ready.set_camera(&renderer.gpu, &scene.camera);
+    assert_eq!(first, picture());
+}

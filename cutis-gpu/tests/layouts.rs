@@ -1,0 +1,171 @@
+//! Every struct that Rust and WGSL share lies the same in both: names, offsets, sizes.
+
+use cutis_gpu::passes::diffusion::{Along, Halved, Widening};
+use cutis_gpu::passes::downsample::Pixels;
+use cutis_gpu::passes::gather::Gaussian;
+use cutis_gpu::passes::resolve::{LayerKind, Wanted};
+use cutis_gpu::passes::shadow::Drawn;
+use cutis_gpu::passes::shares::ShareGroup;
+use cutis_gpu::passes::transmission::{Slab, Smoothing};
+use cutis_gpu::passes::visibility::Group;
+use cutis_gpu::scene::camera::GpuCamera;
+use cutis_gpu::scene::environment::GpuEnvironment;
+use cutis_gpu::scene::geometry::Vertex;
+use cutis_gpu::scene::lights::{GpuLight, NO_MAP};
+use cutis_gpu::scene::material::GpuMaterial;
+use cutis_gpu::{passes, shaders};
+use cutis_render::passes::tap::NARROW_TEXEL2;
+use cutis_render::passes::transmission::{FADE_DEVIATIONS, VISIBLE};
+use cutis_render::prepare::rho_dt::{COSINES, ROUGHNESSES};
+use cutis_render::specular_brdf::MIN_ROUGHNESS;
+use std::mem::{offset_of, size_of};
+
+fn module(source: &str) -> naga::Module {
+    naga::front::wgsl::parse_str(source).expect("WGSL parses")
+}
+
+/// Name and offset of every member of a WGSL struct, and its size.
+fn wgsl_layout(source: &str, name: &str) -> (Vec<(String, usize)>, usize) {
+    let module = module(source);
+    let (_, ty) = module.types.iter().find(|(_, t)| t.name.as_deref() == Some(name)).expect("is declared");
+    let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is not a struct") };
+    let named = members.iter().map(|m| (m.name.clone().unwrap_or_default(), m.offset as usize));
+    (named.collect(), *span as usize)
+}
+
+/// Compares a Rust struct with the WGSL struct of a name in a shader.
+macro_rules! same_layout {
+    ($rust:ty, $shader:expr, $name:literal, [$($field:ident),+ $(,)?]) => {{
+        let (wgsl, size) = wgsl_layout($shader, $name);
+        let rust = [$((stringify!($field).to_owned(), offset_of!($rust, $field))),+];
+        assert_eq!(wgsl, rust, "{}", $name);
+        assert_eq!(size, size_of::<$rust>(), "{}", $name);
+    }};
+}
+
+#[test]
+fn structs_of_the_scene_match_wgsl() {
+    same_layout!(Vertex, shaders::STRETCH, "Vertex", [position_mm, u, normal, v, tangent]);
+    same_layout!(
+        GpuLight,
+        shaders::SHADOW,
+        "Light",
+        [
+            position_mm,
+            kind,
+            dir,
+            extent,
+            strength,
+            cos_inner,
+            map_right,
+            cos_outer,
+            map_up,
+            map_half_width,
+            map_forward,
+            map_near_mm,
+            map_origin_mm,
+            map_far_mm,
+            map_layer,
+            pad0,
+            pad1,
+            pad2
+        ]
+    );
+    same_layout!(
+        GpuMaterial,
+        shaders::ATLAS,
+        "Material",
+        [albedo_factor, albedo_mix, rho_s, f0, roughness, relief_strength, relief_space, pad0, pad1, pad2]
+    );
+    same_layout!(
+        GpuEnvironment,
+        shaders::SKY,
+        "Environment",
+        [radiance_scale, rotation_rad, roughnesses, last_roughness, pad0, pad1, pad2]
+    );
+    same_layout!(
+        GpuCamera,
+        shaders::SKY,
+        "Camera",
+        [position_mm, near_mm, forward, far_mm, right, pad0, up, pad1]
+    );
+}
+
+#[test]
+fn structs_of_the_passes_match_wgsl() {
+    same_layout!(Drawn, shaders::SHADOW, "Drawn", [light, object, pad0, pad1]);
+    same_layout!(
+        Group,
+        shaders::VISIBILITY,
+        "Group",
+        [first_light, light_count, object, samples, opaque_mm, pad0, pad1, pad2]
+    );
+    same_layout!(ShareGroup, shaders::SHARES, "Group", [first_light, pad0, pad1, pad2]);
+    same_layout!(
+        Widening,
+        shaders::TAPS,
+        "Widening",
+        [from_mm2, to_mm2, saved_texel2, unit_variance, weights, axis, pad0, pad1, pad2]
+    );
+    same_layout!(Along, shaders::BLUR, "Along", [step_texels, pad0, pad1]);
+    same_layout!(Halved, shaders::HALVE, "Halved", [layer, factor, pad0, pad1]);
+    same_layout!(Gaussian, shaders::GATHER, "Gaussian", [weight, pad0]);
+    same_layout!(
+        Slab,
+        shaders::TRANSMISSION,
+        "Slab",
+        [weight, variance_mm2, object, many_lights, pad0, pad1]
+    );
+    same_layout!(Smoothing, shaders::SMOOTH, "Smoothing", [step, pad0, pad1, pad2]);
+    same_layout!(Wanted, shaders::RESOLVE, "Wanted", [layer, pad0, pad1, pad2]);
+    same_layout!(Pixels, shaders::DOWNSAMPLE, "Pixels", [grid, pad0, pad1, pad2]);
+}
+
+/// A constant of a shader.
+fn constant(source: &str, name: &str) -> f64 {
+    let module = module(source);
+    let (_, found) =
+        module.constants.iter().find(|(_, c)| c.name.as_deref() == Some(name)).expect("is declared");
+    match module.global_expressions[found.init] {
+        naga::Expression::Literal(naga::Literal::F32(value)) => f64::from(value),
+        naga::Expression::Literal(naga::Literal::U32(value)) => f64::from(value),
+        naga::Expression::Literal(naga::Literal::I32(value)) => f64::from(value),
+        ref other => panic!("{name} is {other:?}"),
+    }
+}
+
+#[test]
+fn constants_match_wgsl() {
+    let expected = [
+        (shaders::BLUR, "TILE_TEXELS", passes::TILE_TEXELS as f64),
+        (shaders::GATHER, "NO_CHART", f64::from(u16::MAX)),
+        (shaders::SHADOW, "NO_MAP", f64::from(NO_MAP)),
+        (shaders::IRRADIANCE, "COSINES", COSINES as f64),
+        (shaders::IRRADIANCE, "ROUGHNESSES", ROUGHNESSES as f64),
+        (shaders::IRRADIANCE, "MIN_ROUGHNESS", f64::from(MIN_ROUGHNESS)),
+        (shaders::TAPS, "NARROW_TEXEL2", NARROW_TEXEL2),
+        (shaders::TRANSMISSION, "FADE_DEVIATIONS", f64::from(FADE_DEVIATIONS)),
+        (shaders::TRANSMISSION, "VISIBLE", f64::from(VISIBLE)),
+        (shaders::TAPS, "DEVIATIONS", constant(shaders::BLUR, "DEVIATIONS")),
+        (shaders::RESOLVE, "LEVEL", f64::from(LayerKind::Level as u32)),
+        (shaders::RESOLVE, "DISTANCES", f64::from(LayerKind::Distances as u32)),
+        (shaders::RESOLVE, "DISTANCE_OF_ONE", f64::from(LayerKind::DistanceOfOne as u32)),
+        (shaders::RESOLVE, "NORMAL", f64::from(LayerKind::Normal as u32)),
+        (shaders::RESOLVE, "ALBEDO", f64::from(LayerKind::Albedo as u32)),
+        (shaders::RESOLVE, "SPECULAR", f64::from(LayerKind::Specular as u32)),
+        (shaders::RESOLVE, "TRANSMISSION", f64::from(LayerKind::Transmission as u32)),
+        (shaders::RESOLVE, "DIFFUSE", f64::from(LayerKind::Diffuse as u32)),
+        (shaders::RESOLVE, "EXITANCE", f64::from(LayerKind::Exitance as u32)),
+        (shaders::RESOLVE, "CHARTS", f64::from(LayerKind::Charts as u32)),
+        (shaders::RESOLVE, "STRETCH", f64::from(LayerKind::Stretch as u32)),
+    ];
+    for (source, name, value) in expected {
+        assert_eq!(constant(source, name), value, "{name}");
+    }
+}
+
+#[test]
+fn the_table_of_taps_is_as_long_as_the_shader_takes_it_to_be() {
+    let entries = constant(shaders::TAPS, "VARIANCES");
+    assert_eq!(entries, cutis_render::passes::tap::TAPS.narrow.len() as f64);
+}

@@ -129,6 +129,10 @@ fn mirror_image(light: &Light) -> Light {
             position_mm.x = -position_mm.x;
             dir_travel.x = -dir_travel.x;
         }
+        Light::Projector(projector) => {
+            projector.position_mm.x = -projector.position_mm.x;
+            projector.axes.iter_mut().for_each(|axis| axis.x = -axis.x);
+        }
     }
     light
 }

@@ -22,6 +22,7 @@ fn head_under_sharp_lights() -> Scene {
     for light in &mut scene.lights {
         match light {
             Light::Point { radius_mm, .. } | Light::Spot { radius_mm, .. } => *radius_mm = 0.0,
+            Light::Projector(projector) => projector.radius_mm = 0.0,
             Light::Directional { angular_radius_rad, .. } => *angular_radius_rad = 0.0,
         }
     }

@@ -23,6 +23,7 @@ fn timed(transport: &Transport, start: Start, size: u32, threads: usize) -> (Exi
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads are at hand");
     let begin = Instant::now();
     let map = pool.install(|| ExitanceMap::starting(start, transport, &settings, &Silent));
+    let map = map.expect("no state is kept");
     (map, begin.elapsed().as_secs_f64())
 }
 

@@ -46,6 +46,14 @@ pub enum CheckpointError {
 }
 
 impl Checkpoint {
+    /// The file of another state of the same rendering.
+    pub fn beside(&self, name: &str) -> Self {
+        let mut path = self.path.clone().into_os_string();
+        path.push(".");
+        path.push(name);
+        Self { path: path.into() }
+    }
+
     /// The number of samples and the state of a rendering known by `key` with a state of `length` bytes; none if there is no
     /// file.
     ///

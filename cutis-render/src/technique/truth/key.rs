@@ -1,5 +1,6 @@
 //! A number that tells renderings apart whose samples must not be mixed.
 
+use super::Start;
 use crate::settings::Settings;
 use cutis_scene::{Environment, Light, Material, Mesh, Scene, Texture};
 use glam::Vec2;
@@ -33,6 +34,13 @@ pub fn of(scene: &Scene, settings: &Settings) -> u64 {
         tangents.iter().for_each(|v| v.to_array().map(f32::to_bits).hash(&mut hasher));
         uvs.iter().for_each(|v| v.to_array().map(f32::to_bits).hash(&mut hasher));
     }
+    hasher.finish()
+}
+
+/// The number of an exitance map of that scene.
+pub fn of_map(scene: &Scene, settings: &Settings, start: Start) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    (of(scene, settings), settings.irradiance_size, format!("{start:?}")).hash(&mut hasher);
     hasher.finish()
 }
 

@@ -50,7 +50,7 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
     );
     if settings.aov_space == AovSpace::Texture {
         let start = Instant::now();
-        let map = ExitanceMap::new(&transport, settings, progress);
+        let map = ExitanceMap::new(&transport, settings, progress)?;
         frame.layers = settings.aovs.iter().filter_map(|&aov| map.layer(aov)).collect();
         passes.push(PassTime { name: "exitance".to_owned(), time: start.elapsed() });
     }
@@ -63,7 +63,7 @@ fn expose(transport: &Transport, settings: &Settings, progress: &dyn Progress) -
     let (key, wanted) = (key::of(transport.scene, settings), u64::from(settings.samples_per_pixel));
     let mut film = Film::new(transport.scene, settings);
     if let Some(checkpoint) = &settings.checkpoint
-        && let Some((samples, state)) = checkpoint.load(key, film.state().len()).map_err(kept)?
+        && let Some((samples, state)) = checkpoint.load(key, film.state().len()).map_err(checkpoint_error)?
     {
         film.restore(samples, &state);
     }
@@ -95,10 +95,12 @@ fn expose(transport: &Transport, settings: &Settings, progress: &dyn Progress) -
 }
 
 fn keep(checkpoint: Option<&Checkpoint>, key: u64, film: &Film) -> Result<(), RenderError> {
-    checkpoint.map_or(Ok(()), |checkpoint| checkpoint.save(key, film.samples(), film.state()).map_err(kept))
+    checkpoint.map_or(Ok(()), |checkpoint| {
+        checkpoint.save(key, film.samples(), film.state()).map_err(checkpoint_error)
+    })
 }
 
-fn kept(error: crate::film::CheckpointError) -> RenderError {
+fn checkpoint_error(error: crate::film::CheckpointError) -> RenderError {
     RenderError::Checkpoint { reason: error.to_string() }
 }
 

@@ -65,6 +65,31 @@ fn going_on_gives_what_doing_it_at_once_gives() {
 }
 
 #[test]
+fn exitance_goes_on_where_it_stopped() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = ball_in_light(0.4, 8.0);
+    let transport = crate::transport::path::Transport::new(&scene, 1).unwrap();
+    for start in [super::Start::Light, super::Start::Texel] {
+        let path = folder.path().join(format!("{start:?}.paths"));
+        let settings = |samples, checkpoint: Option<Checkpoint>| Settings {
+            irradiance_size: 64,
+            checkpoint,
+            ..small(samples)
+        };
+        let map = |settings: &Settings| super::ExitanceMap::starting(start, &transport, settings, &Silent);
+        let kept = Some(Checkpoint { path: path.clone() });
+        let half = map(&settings(3, kept.clone())).unwrap();
+        let whole = map(&settings(6, kept.clone())).unwrap();
+        let at_once = map(&settings(6, None)).unwrap();
+        assert_ne!(half.exitance_w_per_m2, whole.exitance_w_per_m2);
+        assert_eq!(whole.exitance_w_per_m2, at_once.exitance_w_per_m2, "{start:?}");
+        assert_eq!(whole.standard_error_w_per_m2, at_once.standard_error_w_per_m2, "{start:?}");
+        let other = Settings { irradiance_size: 32, ..settings(6, kept) };
+        assert!(matches!(map(&other), Err(RenderError::Checkpoint { .. })));
+    }
+}
+
+#[test]
 fn a_checkpoint_of_something_else_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("ball.paths");
@@ -174,7 +199,7 @@ fn threads_change_no_bit() {
     for start in [super::Start::Light, super::Start::Texel] {
         let [one, two] = [1, 2].map(|threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| super::ExitanceMap::starting(start, &transport, &settings, &Silent))
+            pool.install(|| super::ExitanceMap::starting(start, &transport, &settings, &Silent).unwrap())
         });
         assert!(one.exitance_w_per_m2.iter().any(|e| e.x > 0.0));
         assert_eq!(one.exitance_w_per_m2, two.exitance_w_per_m2, "{start:?}");

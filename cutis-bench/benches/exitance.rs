@@ -2,6 +2,8 @@
 //! 2 %, from the lamp and from the texels, and what a second thread brings, beside what it brings to sums that share nothing.
 //! Runs of minutes, each taken once: no criterion.
 
+#![allow(clippy::print_stdout, reason = "what it measures is its result")]
+
 use cutis_render::technique::truth::{ExitanceMap, Start};
 use cutis_render::transport::path::Transport;
 use cutis_render::transport::random::Random;

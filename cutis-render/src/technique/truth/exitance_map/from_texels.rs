@@ -13,10 +13,13 @@ use rayon::prelude::*;
 /// Least weight of a corner where paths start.
 const OFF_EDGE: f64 = 1e-3;
 
+/// Where a path starts: on which triangle, and the place, mm.
+type Place = (Meeting, DVec3);
+
 /// Paths from the middle of each texel.
 pub(super) struct FromTexels<'a, 'b> {
     transport: &'b Transport<'a>,
-    places: Vec<Option<(Meeting, DVec3)>>,
+    places: Vec<Option<Place>>,
     estimates: Vec<Estimate>,
     seed: u64,
 }
@@ -36,7 +39,7 @@ impl Estimator for FromTexels<'_, '_> {
     fn add(&mut self, first: u64, count: u64) -> u64 {
         let Self { transport, places, estimates, seed } = self;
         let texels = estimates.par_iter_mut().with_min_len(16).zip(places).enumerate();
-        let add_to = |(texel, (estimate, place)): (usize, (&mut Estimate, &mut Option<(Meeting, DVec3)>))| {
+        let add_to = |(texel, (estimate, place)): (usize, (&mut Estimate, &mut Option<Place>))| {
             let Some((meeting, place_mm)) = place else { return 0 };
             let one = |sample| {
                 let mut random = Random::new(*seed, texel as u64, sample);

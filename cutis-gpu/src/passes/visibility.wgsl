@@ -98,15 +98,30 @@ fn visible_fraction(map: LightMap, extent: f32, point_mm: vec3f, normal: vec3f, 
     if extent <= 0.0 {
         return lit_share(map, to, to.uv);
     }
-    let hidden_by_mm = blocker_depth_mm(map, extent, to, shift);
-    // Where nothing is in between there is nothing to be tried.
-    let samples = select(0u, group_of.samples, hidden_by_mm > 0.0);
+    let found_mm = blocker_depth_mm(map, extent, to, shift);
+    // The horizon is the same at any depth of the cone to the light.
+    let hidden_by_mm = select(to.axes_mm.z - 1.0, found_mm, found_mm > 0.0);
     let radius = disc_radius(map, extent, to.axes_mm.z, hidden_by_mm);
+    // Where nothing is in between, nor the horizon, there is nothing to be tried.
+    let is_clear = found_mm <= 0.0 && is_high(map, to, radius, hidden_by_mm);
+    let samples = select(group_of.samples, 0u, is_clear);
     var sum = 0.0;
     for (var s = 0u; s < samples; s++) {
-        sum += lit_share(map, to, to.uv + radius * disc(r2_point(s, shift)));
+        let uv = to.uv + radius * disc(r2_point(s, shift));
+        sum += select(0.0, lit_share(map, to, uv), height_mm(map, to, uv, hidden_by_mm) > 0.0);
     }
     return select(1.0, sum / f32(group_of.samples), samples > 0u);
+}
+
+/// How high above the point's tangent plane a place of the map lies at a depth, mm.
+fn height_mm(map: LightMap, to: Receiver, uv: vec2f, depth_mm: f32) -> f32 {
+    let place = vec2f(2.0 * uv.x - 1.0, 1.0 - 2.0 * uv.y) * map_half_width_mm(map, depth_mm);
+    return dot(to.normal, vec3f(place, depth_mm) - to.axes_mm);
+}
+
+/// Whether the whole cone to the light's disc, `radius` wide on the map at a depth, lies above the point's horizon.
+fn is_high(map: LightMap, to: Receiver, radius: f32, depth_mm: f32) -> bool {
+    return height_mm(map, to, to.uv, depth_mm) > 2.0 * radius * map_half_width_mm(map, depth_mm);
 }
 
 fn receiver(map: LightMap, point_mm: vec3f, normal: vec3f) -> Receiver {

@@ -105,6 +105,15 @@ impl Medium {
         Ok(self)
     }
 
+    /// The same medium in which every length, its free paths first, is `factor` times as long.
+    pub fn stretched(&self, factor: f64) -> Self {
+        Self {
+            sigma_a_per_mm: self.sigma_a_per_mm / factor,
+            sigma_s_reduced_per_mm: self.sigma_s_reduced_per_mm / factor,
+            ..*self
+        }
+    }
+
     /// Reduced extinction sigma_t' = sigma_a + sigma_s', 1/mm.
     pub fn sigma_t_reduced_per_mm(&self) -> f64 {
         self.sigma_a_per_mm + self.sigma_s_reduced_per_mm

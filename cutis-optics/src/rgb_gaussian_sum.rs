@@ -74,6 +74,30 @@ impl RgbGaussianSum {
         Self { variances_mm2: self.variances_mm2.clone(), weights: self.weights.iter().map(scale).collect() }
     }
 
+    /// Every channel's profile widened by its own factor (above 0) on lengths, weights kept. As many terms as before: the
+    /// variances are spread over what the narrowest and the widest channel need, and terms between two of them are shared.
+    pub fn widened(&self, factors: [f64; 3]) -> Self {
+        let least = factors.iter().copied().fold(f64::INFINITY, f64::min).powi(2);
+        let most = factors.iter().copied().fold(0.0, f64::max).powi(2);
+        let last = self.len().saturating_sub(1).max(1) as f64;
+        let spread = |(i, v): (usize, &f64)| v * least * (most / least).powf(i as f64 / last);
+        let variances_mm2: Vec<f64> = self.variances_mm2.iter().enumerate().map(spread).collect();
+        if self.is_empty() {
+            return self.clone();
+        }
+        let channels: [GaussianSum; 3] = core::array::from_fn(|c| {
+            let widen =
+                |(v, w): (f64, [f64; 3])| Gaussian { weight: w[c], variance_mm2: v * factors[c].powi(2) };
+            // A hair narrower: rounding must not push the widest term beyond the last variance.
+            let widest = variances_mm2[variances_mm2.len() - 1];
+            let inside = |g: Gaussian| Gaussian { variance_mm2: g.variance_mm2.min(widest), ..g };
+            GaussianSum::new(self.rows().map(widen).map(inside).collect()).on_variances(&variances_mm2)
+        });
+        let weights =
+            (0..self.len()).map(|i| core::array::from_fn(|c| channels[c].terms[i].weight)).collect();
+        Self { variances_mm2, weights }
+    }
+
     /// Rows whose variances differ by at most `relative_tolerance` become one, at the mean variance weighted by the sum of
     /// the three weights; totals are kept.
     pub fn merged(&self, relative_tolerance: f64) -> Self {
@@ -162,6 +186,30 @@ mod tests {
         let rgb = RgbGaussianSum::from_channels(&three());
         for c in 0..3 {
             assert_eq!(rgb.slab(0.7).channel(c), rgb.channel(c).slab(0.7));
+        }
+    }
+
+    #[test]
+    fn widening_keeps_weights_and_scales_every_channel_s_variance() {
+        let kernel = crate::presets::find("three-layer-skin").unwrap().kernel(6).unwrap();
+        let mean = |sum: &RgbGaussianSum, c: usize| sum.rows().map(|(v, w)| v * w[c]).sum::<f64>();
+        for factors in [[2.0, 2.0, 2.0], [3.0, 1.0, 0.5], [0.1, 0.2, 10.0]] {
+            let widened = kernel.widened(factors);
+            assert_eq!(widened.len(), kernel.len());
+            for c in 0..3 {
+                let (before, after) = (mean(&kernel, c) * factors[c].powi(2), mean(&widened, c));
+                // Sharing terms keeps weight and mean variance; only sums are rounded.
+                assert!(
+                    (after / before - 1.0).abs() < 1e-12,
+                    "{factors:?} channel {c}: {after} for {before}"
+                );
+                assert!((widened.totals()[c] - kernel.totals()[c]).abs() < 1e-12);
+            }
+        }
+        let even = kernel.widened([2.0; 3]);
+        for ((v, w), (before, weights)) in even.rows().zip(kernel.rows()) {
+            assert!((v / (4.0 * before) - 1.0).abs() < 1e-12);
+            (0..3).for_each(|c| assert!((w[c] - weights[c]).abs() < 1e-9));
         }
     }
 }

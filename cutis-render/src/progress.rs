@@ -1,5 +1,7 @@
 //! How far the work is, for whoever watches.
 
+use crate::Frame;
+
 /// Told by the passes how far they are. Called from many threads.
 pub trait Progress: Sync {
     /// A pass of `steps` equal steps begins.
@@ -8,6 +10,13 @@ pub trait Progress: Sync {
     fn advance(&self, steps: u64);
     /// How good the current pass is by now, in words.
     fn note(&self, _words: &str) {}
+    /// Whether the work is still wanted; asked between steps of long work, which ends in [`crate::RenderError::Stopped`]
+    /// if it is not.
+    fn goes_on(&self) -> bool {
+        true
+    }
+    /// The picture as it is by now can be had.
+    fn preview(&self, _picture: &dyn Fn() -> Frame) {}
 }
 
 /// Tells nobody.

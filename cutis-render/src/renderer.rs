@@ -26,6 +26,9 @@ pub enum RenderError {
         /// What is wrong, with the file's name.
         reason: String,
     },
+    /// Whoever watches did not want it any more.
+    #[error("stopped")]
+    Stopped,
     /// The machine that was to draw it cannot.
     #[error("{reason}")]
     Backend {

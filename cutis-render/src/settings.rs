@@ -23,6 +23,8 @@ pub struct Settings {
     pub irradiance_size: u32,
     /// Gaussians in the kernel of a material that is given by its coefficients.
     pub gaussians: usize,
+    /// Numbers of the kernel's Gaussians that are left out, to see what each does; the others keep their weights.
+    pub muted_gaussians: Vec<usize>,
     /// Shadow rays per texel towards a light with an extent.
     pub shadow_samples: u32,
     /// Ambient-occlusion rays per texel of the (smaller) occlusion map.
@@ -54,6 +56,7 @@ impl Default for Settings {
             samples_per_pixel: 4,
             irradiance_size: 2048,
             gaussians: 6,
+            muted_gaussians: Vec::new(),
             shadow_samples: 4,
             ambient_samples: 6,
             diffusion_report: false,

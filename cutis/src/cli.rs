@@ -5,6 +5,7 @@ mod compare;
 mod diff;
 mod profile;
 mod validate;
+mod view;
 
 use crate::backend::Backend;
 use crate::talk;
@@ -20,6 +21,7 @@ use std::fmt::Display;
 use std::path::PathBuf;
 use std::process::ExitCode;
 pub use validate::ValidateArgs;
+pub use view::ViewArgs;
 
 /// Diffusion operators that can be chosen.
 pub const DIFFUSIONS: [Diffusion; 2] = [Diffusion::None, Diffusion::Separable];
@@ -45,6 +47,8 @@ pub struct Cli {
 pub enum Command {
     /// Render a picture of a scene, or of the built-in head
     Render(Box<RenderArgs>),
+    /// Look at a scene in a window: turn it, light it, change its skin, see every pass
+    View(ViewArgs),
     /// Render a scene with every technique and write a page with pictures, errors and times
     Compare(Box<CompareArgs>),
     /// Tell how far a picture is from a reference: RMSE, relative MSE, bias, FLIP

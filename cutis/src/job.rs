@@ -66,6 +66,7 @@ fn settings(args: &RenderArgs) -> Result<Settings> {
         samples_per_pixel: args.samples,
         irradiance_size: args.irradiance_size,
         gaussians: args.gaussians,
+        muted_gaussians: Vec::new(),
         shadow_samples: args.shadow_samples,
         diffusion_report: args.diffusion_report,
         ambient_samples: args.ambient_samples,
@@ -174,7 +175,8 @@ pub fn size(text: &str) -> Result<(u32, u32)> {
     sides.ok_or_else(|| miette!("--size must be WIDTHxHEIGHT in pixels, such as 1024x1024, got '{text}'"))
 }
 
-fn named<T: Copy>(flag: &str, name: &str, known: impl IntoIterator<Item = (String, T)>) -> Result<T> {
+/// The value of a name.
+pub fn named<T: Copy>(flag: &str, name: &str, known: impl IntoIterator<Item = (String, T)>) -> Result<T> {
     let value = known.into_iter().find_map(|(known, value)| (known == name).then_some(value));
     value.ok_or_else(|| miette!("{flag}: there is no '{name}'"))
 }

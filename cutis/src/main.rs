@@ -22,6 +22,7 @@ mod scene_source;
 mod simulate;
 mod talk;
 mod validate;
+mod view;
 mod whole_file;
 
 use cli::{Cli, Command};
@@ -54,6 +55,7 @@ fn main() -> ExitCode {
 fn run(cli: &Cli) -> miette::Result<Outcome> {
     match &cli.command {
         Command::Render(args) => render::run(args, cli.verbose),
+        Command::View(args) => view::run(args),
         Command::Compare(args) => compare::run(args, cli.verbose),
         Command::Diff(args) => diff::run(args),
         Command::Validate(args) => validate::run(args, cli.verbose),

@@ -9,7 +9,7 @@ use crate::passes::resolve::{Resolve, Sample};
 use crate::progress::Progress;
 use crate::sampling::random2;
 use crate::settings::{Aov, Settings};
-use cutis_scene::{CameraRays, Hit, SurfacePoint};
+use cutis_scene::{Camera, CameraRays, Hit, SurfacePoint};
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 
@@ -21,11 +21,11 @@ const TILE: usize = 16;
 const SHARED_TEXELS: f32 = 1.5;
 
 /// Draws the picture tile by tile: neighbours in both directions read the same texels.
-pub fn picture(resolve: &Resolve, settings: &Settings, progress: &dyn Progress) -> Frame {
+pub fn picture(resolve: &Resolve, camera: &Camera, settings: &Settings, progress: &dyn Progress) -> Frame {
     let (width, height) = (settings.width as usize, settings.height as usize);
     let columns = width.div_ceil(TILE);
     let tiles = columns * height.div_ceil(TILE);
-    let lens = Lens::new(resolve, settings);
+    let lens = Lens::new(resolve, camera, settings);
     progress.begin("resolve", tiles as u64);
     let drawn: Vec<Vec<Sample>> = (0..tiles)
         .into_par_iter()
@@ -63,6 +63,7 @@ pub fn picture(resolve: &Resolve, settings: &Settings, progress: &dyn Progress) 
 struct Lens<'a> {
     resolve: &'a Resolve<'a>,
     rays: CameraRays,
+    eye_mm: Vec3,
     /// Width and height of the picture, pixels.
     size: Vec2,
     /// Samples along a side of a pixel.
@@ -71,11 +72,12 @@ struct Lens<'a> {
 }
 
 impl<'a> Lens<'a> {
-    fn new(resolve: &'a Resolve<'a>, settings: &Settings) -> Self {
+    fn new(resolve: &'a Resolve<'a>, camera: &Camera, settings: &Settings) -> Self {
         let size = Vec2::new(settings.width as f32, settings.height as f32);
         Self {
             resolve,
-            rays: resolve.scene.camera.rays(size.x / size.y),
+            rays: camera.rays(size.x / size.y),
+            eye_mm: camera.position_mm,
             size,
             grid: (settings.samples_per_pixel as f32).sqrt().ceil() as u32,
             seed: settings.seed,
@@ -84,7 +86,7 @@ impl<'a> Lens<'a> {
 
     /// The mean of a pixel.
     fn pixel(&self, x: u32, y: u32) -> Sample {
-        let eye_mm = self.resolve.scene.camera.position_mm;
+        let eye_mm = self.eye_mm;
         let seen: Vec<(Vec3, Option<Hit>)> = (0..self.grid * self.grid)
             .map(|i| {
                 let dir = self.dir(x, y, i);

@@ -1,7 +1,8 @@
 //! From a material's numbers to the one kernel all passes use: variances and a weight per channel.
 
 use crate::RenderError;
-use cutis_optics::{RgbGaussianSum, presets, rgb_kernel};
+use cutis_optics::presets::PresetMaterial;
+use cutis_optics::{Medium, RgbGaussianSum, presets, rgb_kernel};
 use cutis_scene::{Material, Scattering};
 use glam::Vec3;
 
@@ -36,6 +37,24 @@ pub fn kernel_of(material: &Material, gaussians: usize) -> Result<Kernel, Render
     Ok(if coloured { kernel.normalised_to_white() } else { kernel })
 }
 
+/// The same scattering with free paths `factors` times as long in red, green and blue. A preset of no known name stays:
+/// [`kernel_of`] names it.
+pub fn stretched(scattering: &Scattering, factors: [f64; 3]) -> Scattering {
+    let media = |media: &[Medium; 3]| {
+        Scattering::Medium(std::array::from_fn(|channel| media[channel].stretched(factors[channel])))
+    };
+    let kernel = |sum: &RgbGaussianSum| Scattering::Kernel(sum.widened(factors));
+    match scattering {
+        Scattering::Medium(m) => media(m),
+        Scattering::Kernel(sum) => kernel(sum),
+        Scattering::Preset(name) => match presets::find(name).map(|preset| &preset.material) {
+            Ok(PresetMaterial::Media(m)) => media(m),
+            Ok(PresetMaterial::Kernel(sum)) => kernel(sum),
+            Err(_) => scattering.clone(),
+        },
+    }
+}
+
 impl Kernel {
     /// The kernel of a sum of Gaussians: terms sorted by variance.
     pub fn new(sum: &RgbGaussianSum) -> Self {
@@ -50,6 +69,16 @@ impl Kernel {
     /// A kernel that leaves light where it falls: the opaque surface of the same colour.
     pub fn opaque(total: Vec3) -> Self {
         Self { variances_mm2: vec![0.0], weights: vec![total] }
+    }
+
+    /// Without some of its Gaussians, by their numbers; the others keep their weights.
+    pub fn without(mut self, muted: &[usize]) -> Self {
+        self.weights
+            .iter_mut()
+            .enumerate()
+            .filter(|(i, _)| muted.contains(i))
+            .for_each(|(_, w)| *w = Vec3::ZERO);
+        self
     }
 
     /// Sum of the weights per channel: the diffuse reflectance.

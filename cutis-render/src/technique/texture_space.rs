@@ -18,8 +18,9 @@ use crate::prepare::{FilteredEnvironment, Kernel, RhoDt};
 use crate::settings::{Aov, AovSpace, Diffusion, Settings};
 use crate::{Progress, RenderError};
 use cutis_optics::{Dipole, Medium, presets};
-use cutis_scene::{Bvh, Material, Object, Scattering, Scene};
+use cutis_scene::{Bvh, Camera, Material, Object, Scattering, Scene};
 use glam::Vec4;
+use std::ops::Deref;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -29,9 +30,9 @@ const OPAQUE_DEVIATIONS: f32 = 5.5;
 /// Smallest irradiance texture of an object that is much smaller than the largest.
 const MIN_ATLAS: u32 = 64;
 
-/// A scene whose light has been gathered and spread, ready to be looked at from anywhere.
-pub struct LitScene<'a> {
-    scene: &'a Scene,
+/// A scene whose light has been gathered and spread, ready to be looked at from anywhere. It borrows the scene, or owns it.
+pub struct LitScene<S> {
+    scene: S,
     bvh: Bvh,
     environment: Option<FilteredEnvironment>,
     maps: Vec<ObjectMaps>,
@@ -45,24 +46,24 @@ pub struct LitScene<'a> {
 /// If a material cannot be turned into a kernel.
 pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Result<Frame, RenderError> {
     let mut lit = LitScene::new(scene, settings, progress)?;
-    let mut frame = lit.resolve(settings, progress);
+    let mut frame = lit.resolve(&scene.camera, settings, progress);
     if settings.aov_space == AovSpace::Texture {
         frame.layers = settings.aovs.iter().filter_map(|&aov| lit.texture_layer(aov)).collect();
     }
     if settings.diffusion_report {
         frame.diffusion_reports = lit.reports();
     }
-    frame.passes = lit.clock.passes;
+    frame.passes = lit.take_passes();
     frame.warnings = warnings(scene);
     Ok(frame)
 }
 
-impl<'a> LitScene<'a> {
+impl<S: Deref<Target = Scene>> LitScene<S> {
     /// Runs every pass but the last.
     ///
     /// # Errors
     /// If a material cannot be turned into a kernel.
-    pub fn new(scene: &'a Scene, settings: &Settings, progress: &dyn Progress) -> Result<Self, RenderError> {
+    pub fn new(scene: S, settings: &Settings, progress: &dyn Progress) -> Result<Self, RenderError> {
         let mut clock = Clock::default();
         let bvh = clock.time("acceleration structure", || Bvh::build(&scene.objects));
         let environment =
@@ -70,29 +71,30 @@ impl<'a> LitScene<'a> {
         let sizes = atlas_sizes(&scene.objects, settings.irradiance_size);
         let mut maps = Vec::with_capacity(scene.objects.len());
         for (object, size) in scene.objects.iter().zip(sizes) {
-            let pass = ObjectPass { scene, settings, bvh: &bvh, environment: environment.as_ref(), object };
+            let pass =
+                ObjectPass { scene: &scene, settings, bvh: &bvh, environment: environment.as_ref(), object };
             maps.push(pass.run(size as usize, &mut clock, progress)?);
         }
-        let bodies = Bodies { scene, bvh: &bvh, maps: &maps };
+        let bodies = Bodies { scene: &scene, bvh: &bvh, maps: &maps };
         let transmission = clock.time("transmission", || {
             scene.objects.iter().zip(&maps).map(|(o, maps)| bodies.transmission(o, maps, progress)).collect()
         });
         Ok(Self { scene, bvh, environment, maps, transmission, clock })
     }
 
-    /// The final pass: a picture through the scene's camera.
-    pub fn resolve(&mut self, settings: &Settings, progress: &dyn Progress) -> Frame {
+    /// The final pass: a picture through a camera.
+    pub fn resolve(&mut self, camera: &Camera, settings: &Settings, progress: &dyn Progress) -> Frame {
         let aovs: &[Aov] = if settings.aov_space == AovSpace::Picture { &settings.aovs } else { &[] };
         let environment = self.environment.as_ref();
         let resolve = Resolve {
-            scene: self.scene,
+            scene: &self.scene,
             bvh: &self.bvh,
             environment,
             maps: &self.maps,
             transmission: &self.transmission,
             aovs,
         };
-        self.clock.time("resolve", || picture(&resolve, settings, progress))
+        self.clock.time("resolve", || picture(&resolve, camera, settings, progress))
     }
 
     /// Energy and seam error of every object.
@@ -110,6 +112,11 @@ impl<'a> LitScene<'a> {
         &self.maps
     }
 
+    /// What was done and how long it took, since the light was gathered or this was asked for the last time.
+    pub fn take_passes(&mut self) -> Vec<PassTime> {
+        std::mem::take(&mut self.clock.passes)
+    }
+
     /// Distances through the body towards the first four lights, texel by texel, mm.
     fn distances_mm(&self, maps: &ObjectMaps) -> Vec<Vec4> {
         let layers = &maps.diffused.levels[0].layers;
@@ -122,7 +129,7 @@ impl<'a> LitScene<'a> {
     }
 
     /// A pass's own texture, of the first object. `None` for layers that exist only in the picture.
-    fn texture_layer(&self, aov: Aov) -> Option<Layer> {
+    pub fn texture_layer(&self, aov: Aov) -> Option<Layer> {
         let maps = self.maps.first()?;
         let level = |i: usize| maps.diffused.levels.get(i).map(|l| (l.charts.size, l.layers[0].clone()));
         let (size, pixels) = match aov {
@@ -219,7 +226,7 @@ impl ObjectPass<'_> {
 pub fn chosen_kernel(material: &Material, settings: &Settings) -> Result<Kernel, RenderError> {
     let kernel = kernel_of(material, settings.gaussians)?;
     Ok(match settings.diffusion {
-        Diffusion::Separable => kernel,
+        Diffusion::Separable => kernel.without(&settings.muted_gaussians),
         Diffusion::None => Kernel::opaque(kernel.total()),
     })
 }

@@ -77,6 +77,9 @@ fn expose(transport: &Transport, settings: &Settings, progress: &dyn Progress) -
         let count = pass.min(wanted - film.samples());
         for row in (0..height as usize).step_by(rows) {
             film.expose(transport, count, row..(row + rows).min(height as usize));
+            if !progress.goes_on() {
+                return Err(RenderError::Stopped);
+            }
             if last_kept.elapsed() > KEEP_EVERY {
                 keep(settings.checkpoint.as_ref(), key, &film)?;
                 last_kept = Instant::now();
@@ -84,6 +87,7 @@ fn expose(transport: &Transport, settings: &Settings, progress: &dyn Progress) -
         }
         film.finish(count);
         progress.advance(count);
+        progress.preview(&|| film.frame(settings));
         let noise = film.noise();
         progress.note(&format!("paths, noise {:.2} %", 100.0 * noise));
         if film.samples() >= SAMPLES_MIN && settings.target_error.is_some_and(|target| noise <= target) {

@@ -1,0 +1,294 @@
+//! The window: takes in what the person does and what the painter has drawn, and asks for the next picture.
+
+use super::files::{Loading, dropped, write_picture};
+use super::keys::{Command, command};
+use super::look::{Drawing, Look};
+use super::painter::{News, Painter, Wish};
+use super::shown::{Shown, View, camera_layers};
+use super::side::Side;
+use super::turntable::Turntable;
+use super::{canvas, help, panel};
+use crate::scene_source::SceneSource;
+use cutis_render::TechniqueName;
+use cutis_scene::Scene;
+use eframe::egui::{CentralPanel, Context, Event, InputState, Panel, Ui};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Narrowest panel, points.
+const PANEL_WIDTH: f32 = 340.0;
+
+/// The state of the window.
+pub struct Viewer {
+    /// Where the scene comes from.
+    pub source: SceneSource,
+    /// The scene as it was read.
+    pub scene: Arc<Scene>,
+    /// How it is looked at, left and right.
+    pub looks: [Look; 2],
+    /// The look before anything was changed.
+    pub original: Look,
+    /// Which look the panel changes.
+    pub edited: usize,
+    /// Where the picture is divided, as a share of its width, if two looks are compared.
+    pub split: Option<f32>,
+    /// What is to be seen.
+    pub shown: Shown,
+    /// Number of the light that follows the mouse.
+    pub light: usize,
+    /// What was drawn.
+    pub sides: [Side; 2],
+    /// What went well or wrong last.
+    pub message: Option<String>,
+    /// Where pictures are written.
+    pub folder: PathBuf,
+    /// A turn around the scene that is being written.
+    pub turntable: Option<Turntable>,
+    panel: bool,
+    hidden: bool,
+    help: bool,
+    loading: Option<Loading>,
+    painter: Painter,
+    asked: Option<Wish>,
+}
+
+impl Viewer {
+    /// A window on a scene.
+    ///
+    /// # Errors
+    /// If no thread can be had.
+    pub fn new(
+        context: &Context,
+        source: SceneSource,
+        scene: Scene,
+        drawing: Drawing,
+    ) -> std::io::Result<Self> {
+        let original = Look::of(&scene, drawing);
+        Ok(Self {
+            message: scene.warnings.first().map(|warning| format!("warning: {warning}")),
+            source,
+            scene: Arc::new(scene),
+            looks: [original.clone(), original.clone()],
+            original,
+            edited: 0,
+            split: None,
+            shown: Shown::default(),
+            light: 0,
+            sides: [Side::default(), Side::default()],
+            folder: PathBuf::from("."),
+            turntable: None,
+            panel: true,
+            hidden: false,
+            help: false,
+            loading: None,
+            painter: Painter::start(context.clone())?,
+            asked: None,
+        })
+    }
+
+    /// Everything in the window.
+    pub fn show(&mut self, ui: &mut Ui) {
+        self.take_in(ui.ctx());
+        if !self.hidden {
+            Panel::bottom("status").show(ui, |ui| panel::status(self, ui));
+            if self.panel {
+                let width = PANEL_WIDTH.min(0.9 * ui.available_width());
+                Panel::right("panel")
+                    .resizable(true)
+                    .default_size(width)
+                    .show(ui, |ui| panel::show(self, ui));
+            }
+        }
+        let size = CentralPanel::no_frame().show(ui, |ui| canvas::show(self, ui)).inner;
+        help::show(ui.ctx(), &mut self.help);
+        self.ask(size);
+    }
+
+    fn take_in(&mut self, context: &Context) {
+        for news in self.painter.news() {
+            self.take_news(context, news);
+        }
+        let dropped_paths = |input: &InputState| {
+            input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect::<Vec<_>>()
+        };
+        for path in context.input(dropped_paths) {
+            self.open(context, dropped(&path, &self.source));
+        }
+        self.take_scene();
+        self.turn();
+        if !context.egui_wants_keyboard_input() {
+            self.take_keys(context);
+        }
+    }
+
+    fn take_news(&mut self, context: &Context, news: News) {
+        let current = self.asked.as_ref().map_or(0, |wish| wish.number);
+        match news {
+            // A draft of what was wanted a moment ago is better than none while things move; another scene is not.
+            News::Painted(painted) if self.split.is_some() || painted.side == 0 => {
+                let (side, film) = (painted.side, self.looks[painted.side].film);
+                self.sides[side].show(context, side, *painted, &film);
+            }
+            News::Failed { number, side, reason } if number == current => {
+                self.sides[side].failure = Some(reason);
+            }
+            News::Painted(_) | News::Failed { .. } => {}
+        }
+    }
+
+    /// Reads another scene; what is there stays until it has arrived.
+    pub fn open(&mut self, context: &Context, source: SceneSource) {
+        self.loading = Some(Loading::start(source, context));
+        self.message = Some("reading …".to_owned());
+    }
+
+    fn take_scene(&mut self) {
+        let Some(result) = self.loading.as_ref().and_then(Loading::done) else { return };
+        let Some(loading) = self.loading.take() else { return };
+        match result {
+            Ok(scene) => {
+                self.source = loading.source;
+                self.message = scene.warnings.first().map(|warning| format!("warning: {warning}"));
+                self.original = Look::of(&scene, self.looks[0].drawing.clone());
+                self.looks = [self.original.clone(), self.original.clone()];
+                (self.light, self.sides) = (0, [Side::default(), Side::default()]);
+                self.scene = Arc::new(scene);
+            }
+            Err(reason) => self.message = Some(reason),
+        }
+    }
+
+    fn take_keys(&mut self, context: &Context) {
+        let pressed = |event: &Event| match event {
+            Event::Key { key, pressed: true, repeat: false, modifiers, .. } if !modifiers.command => {
+                command(*key)
+            }
+            _ => None,
+        };
+        let commands: Vec<_> = context.input(|input| input.events.iter().filter_map(pressed).collect());
+        commands.into_iter().for_each(|command| self.obey(command));
+    }
+
+    /// Does what a key says.
+    pub fn obey(&mut self, command: Command) {
+        match command {
+            Command::Wireframe => self.shown.wireframe ^= true,
+            Command::NextView => self.shown.view = self.next_view(),
+            Command::Panel => self.panel ^= true,
+            Command::Frame => self.frame_scene(),
+            Command::Hide => self.hidden ^= true,
+            Command::Picture => self.write_picture(),
+            Command::Help => self.help ^= true,
+            Command::Split => self.split = if self.split.is_some() { None } else { Some(0.5) },
+            Command::Technique(n) => {
+                if let Some(&technique) = TechniqueName::ALL.get(n) {
+                    self.looks[self.edited].drawing.technique = technique;
+                }
+            }
+        }
+        if self.split.is_none() {
+            self.edited = 0;
+        }
+    }
+
+    /// Views in the order in which a key goes through them.
+    pub fn views(&self) -> Vec<View> {
+        let layers = camera_layers(self.looks[self.edited].drawing.technique).map(View::Layer);
+        [View::Picture, View::Maps].into_iter().chain(layers).collect()
+    }
+
+    fn next_view(&self) -> View {
+        let views = self.views();
+        let now = views.iter().position(|view| *view == self.shown.view);
+        now.and_then(|i| views.get(i + 1)).copied().unwrap_or_default()
+    }
+
+    /// Sees the whole scene, from where the camera is.
+    pub fn frame_scene(&mut self) {
+        if let Some(bounds_mm) = self.scene.bounds_mm() {
+            super::orbit::frame(&mut self.looks[0].camera, bounds_mm);
+        }
+    }
+
+    /// Writes the picture that is seen to a file.
+    pub fn write_picture(&mut self) {
+        let Some(painted) = &self.sides[self.edited].painted else { return };
+        self.message =
+            Some(match write_picture(&self.folder, &painted.frame, &self.looks[self.edited].film) {
+                Ok(path) => format!("written: {}", path.display()),
+                Err(reason) => reason,
+            });
+    }
+
+    /// Begins a turn around the scene of so many pictures.
+    pub fn begin_turntable(&mut self, pictures: u32) {
+        let camera = self.looks[0].camera;
+        match Turntable::begin(&self.folder, pictures, camera) {
+            Ok(turntable) => self.turntable = Some(turntable),
+            Err(reason) => self.message = Some(reason),
+        }
+    }
+
+    /// Ends it where it began.
+    pub fn end_turntable(&mut self) {
+        if let Some(turntable) = self.turntable.take() {
+            self.looks[0].camera = turntable.start;
+            self.message = Some(turntable.progress());
+        }
+    }
+
+    /// Goes on with a turn around the scene when its picture has been drawn.
+    fn turn(&mut self) {
+        let settled = self.is_settled();
+        let (Some(turntable), Some(painted)) = (&mut self.turntable, &self.sides[0].painted) else { return };
+        if !settled || painted.camera != self.looks[0].camera {
+            return;
+        }
+        match turntable.write(&painted.frame, &self.looks[0].film) {
+            Ok(Some(camera)) => {
+                self.looks[0].camera = camera;
+                self.message = Some(turntable.progress());
+            }
+            Ok(None) => self.end_turntable(),
+            Err(reason) => {
+                self.end_turntable();
+                self.message = Some(reason);
+            }
+        }
+    }
+
+    /// Asks for a picture of this size if it is another than was asked for.
+    fn ask(&mut self, size: [u32; 2]) {
+        // Both sides look from one place.
+        self.looks[1].camera = self.looks[0].camera;
+        let count = if self.split.is_some() { 2 } else { 1 };
+        let wish = Wish {
+            number: self.asked.as_ref().map_or(1, |wish| wish.number + 1),
+            scene: Arc::clone(&self.scene),
+            looks: self.looks[..count].to_vec(),
+            size,
+            shown: self.shown,
+            is_for_a_file: self.turntable.is_some(),
+        };
+        if self.asked.as_ref().is_none_or(|asked| !wish.is_same(asked)) {
+            self.painter.ask(wish.clone());
+            self.asked = Some(wish);
+        }
+    }
+
+    /// Whether everything that was asked for has been drawn as well as it can be, or cannot be drawn.
+    pub fn is_settled(&self) -> bool {
+        let Some(asked) = &self.asked else { return false };
+        let drawn = |side: &Side| {
+            let painted = side.painted.as_ref().is_some_and(|p| p.number == asked.number && p.is_final);
+            painted || side.failure.is_some()
+        };
+        self.loading.is_none() && self.sides[..asked.looks.len()].iter().all(drawn)
+    }
+}
+
+impl eframe::App for Viewer {
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        self.show(ui);
+    }
+}

@@ -1,0 +1,216 @@
+//! Everything that can be changed while looking: plain numbers, relative to the scene as it was read.
+
+use crate::backend::Backend;
+use cutis_render::film::Film;
+use cutis_render::prepare::kernel::stretched;
+use cutis_render::{Diffusion, TechniqueName};
+use cutis_scene::{Camera, Light, Material, ScalarMap, Scattering, Scene};
+use glam::{Quat, Vec3};
+
+/// How a scene is looked at.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Look {
+    /// From where; its exposure is part of the film.
+    pub camera: Camera,
+    /// In which light.
+    pub lights: Vec<LightLook>,
+    /// In which surroundings.
+    pub surroundings: Surroundings,
+    /// Of which material.
+    pub skin: SkinLook,
+    /// By which method.
+    pub drawing: Drawing,
+    /// On which film.
+    pub film: Film,
+}
+
+/// One light, relative to the scene's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LightLook {
+    /// Whether it shines.
+    pub on: bool,
+    /// Factor on its power.
+    pub strength: f32,
+    /// Turn about the vertical axis through the middle of the scene, degrees.
+    pub turn_degrees: f32,
+    /// Turn upwards, degrees.
+    pub lift_degrees: f32,
+    /// Factor on its extent.
+    pub extent: f32,
+}
+
+/// Light from all around, relative to the scene's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Surroundings {
+    /// Factor on its radiance.
+    pub strength: f32,
+    /// Turn about the vertical axis, degrees.
+    pub turn_degrees: f32,
+    /// Whether it is seen behind the scene.
+    pub visible: bool,
+}
+
+/// The material of all objects, relative to their own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SkinLook {
+    /// A preset in place of the scene's own scattering.
+    pub preset: Option<String>,
+    /// Factor on the mean free path of red, green and blue.
+    pub free_path: [f32; 3],
+    /// Factor on the roughness.
+    pub roughness: f32,
+    /// Factor on the specular intensity rho_s.
+    pub oiliness: f32,
+    /// Share of the albedo that filters light on its way in.
+    pub albedo_mix: f32,
+    /// Factor on the relief of the normal map.
+    pub relief: f32,
+}
+
+/// How it is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawing {
+    /// Method.
+    pub technique: TechniqueName,
+    /// How light spreads.
+    pub diffusion: Diffusion,
+    /// Where it is computed.
+    pub backend: Backend,
+    /// Width and height of the irradiance texture, texels.
+    pub irradiance_size: u32,
+    /// Gaussians of a material that is given by its coefficients.
+    pub gaussians: usize,
+    /// Numbers of the Gaussians that are left out.
+    pub muted_gaussians: Vec<usize>,
+}
+
+/// Factors that change nothing.
+impl Default for LightLook {
+    fn default() -> Self {
+        Self { on: true, strength: 1.0, turn_degrees: 0.0, lift_degrees: 0.0, extent: 1.0 }
+    }
+}
+
+impl Look {
+    /// The scene as it was read.
+    pub fn of(scene: &Scene, drawing: Drawing) -> Self {
+        let exposure_ev = scene.camera.exposure_ev;
+        Self {
+            camera: scene.camera,
+            lights: vec![LightLook::default(); scene.lights.len()],
+            surroundings: Surroundings {
+                strength: 1.0,
+                turn_degrees: 0.0,
+                visible: scene.environment.as_ref().is_some_and(|e| e.visible),
+            },
+            skin: SkinLook::of(scene.objects.first().map(|o| &o.material)),
+            drawing,
+            film: Film { exposure_ev, ..Film::default() },
+        }
+    }
+
+    /// The scene as it is looked at.
+    pub fn applied_to(&self, scene: &Scene) -> Scene {
+        let mut scene = scene.clone();
+        let middle_mm = scene.bounds_mm().map_or(Vec3::ZERO, |[lo, hi]| 0.5 * (lo + hi));
+        scene.camera = self.camera;
+        scene.lights = scene
+            .lights
+            .iter()
+            .zip(&self.lights)
+            .filter(|(_, look)| look.on && look.strength > 0.0)
+            .map(|(light, look)| look.applied_to(light, middle_mm))
+            .collect();
+        if let Some(environment) = &mut scene.environment {
+            environment.radiance_scale *= self.surroundings.strength;
+            environment.rotation_rad += self.surroundings.turn_degrees.to_radians();
+            environment.visible = self.surroundings.visible;
+        }
+        // Nothing shines: no need to ask what is open to it.
+        scene.environment = scene.environment.filter(|_| self.surroundings.strength > 0.0);
+        scene.objects.iter_mut().for_each(|object| self.skin.apply_to(&mut object.material));
+        scene
+    }
+
+    /// Whether everything but camera and film is the same, so that light need not be gathered anew.
+    pub fn is_lit_like(&self, other: &Self) -> bool {
+        self.lights == other.lights
+            && self.surroundings == other.surroundings
+            && self.skin == other.skin
+            && self.drawing == other.drawing
+    }
+}
+
+impl LightLook {
+    fn applied_to(&self, light: &Light, middle_mm: Vec3) -> Light {
+        let mut light = light.clone();
+        let turned = |dir: Vec3| self.turned(dir);
+        let moved = |position_mm: &mut Vec3| *position_mm = middle_mm + turned(*position_mm - middle_mm);
+        match &mut light {
+            Light::Directional { dir_to_light, irradiance_w_per_m2, angular_radius_rad } => {
+                *dir_to_light = turned(*dir_to_light);
+                *irradiance_w_per_m2 *= self.strength;
+                *angular_radius_rad *= self.extent;
+            }
+            Light::Point { position_mm, intensity_w_per_sr, radius_mm } => {
+                moved(position_mm);
+                *intensity_w_per_sr *= self.strength;
+                *radius_mm *= self.extent;
+            }
+            Light::Spot { position_mm, dir_travel, intensity_w_per_sr, radius_mm, .. } => {
+                moved(position_mm);
+                *dir_travel = turned(*dir_travel);
+                *intensity_w_per_sr *= self.strength;
+                *radius_mm *= self.extent;
+            }
+            Light::Projector(projector) => {
+                moved(&mut projector.position_mm);
+                projector.intensity_w_per_sr *= self.strength;
+                projector.radius_mm *= self.extent;
+                projector.axes = projector.axes.map(turned);
+            }
+        }
+        light
+    }
+
+    /// A direction from the middle of the scene, turned about the vertical axis and lifted, but not over the pole.
+    fn turned(&self, dir: Vec3) -> Vec3 {
+        let around = Quat::from_rotation_y(self.turn_degrees.to_radians()) * dir;
+        let aside = around.cross(Vec3::Y).normalize_or(Vec3::X);
+        Quat::from_axis_angle(aside, self.lift_degrees.to_radians()) * around
+    }
+}
+
+impl SkinLook {
+    fn of(material: Option<&Material>) -> Self {
+        Self {
+            preset: None,
+            free_path: [1.0; 3],
+            roughness: 1.0,
+            oiliness: 1.0,
+            albedo_mix: material.map_or(0.5, |m| m.albedo_mix),
+            relief: 1.0,
+        }
+    }
+
+    /// Changes a material.
+    pub fn apply_to(&self, material: &mut Material) {
+        if let Some(preset) = &self.preset {
+            material.scattering = Scattering::Preset(preset.clone());
+        }
+        if self.free_path != [1.0; 3] {
+            material.scattering = stretched(&material.scattering, self.free_path.map(f64::from));
+        }
+        scale(&mut material.roughness, self.roughness);
+        scale(&mut material.rho_s, self.oiliness);
+        material.albedo_mix = self.albedo_mix;
+        if let Some(normal) = &mut material.normal {
+            normal.strength *= self.relief;
+        }
+    }
+}
+
+fn scale(map: &mut ScalarMap, factor: f32) {
+    map.offset *= factor;
+    map.gain *= factor;
+}

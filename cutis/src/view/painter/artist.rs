@@ -1,0 +1,110 @@
+//! Draws one side of the window, and keeps what the next picture of it can be drawn from.
+
+use super::on_cpu::OnCpu;
+use super::on_gpu::{Device, OnGpu};
+use super::stage::Stage;
+use super::watch::Watch;
+use super::{Desk, Painted, Wish};
+use crate::backend::Backend;
+use crate::view::look::Look;
+use crate::view::screen;
+use cutis_gpu::GpuRenderer;
+use cutis_render::{Frame, Layer, RenderError, Renderer, Settings};
+use cutis_scene::Scene;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// The one for a side.
+#[derive(Default)]
+pub struct Artist {
+    cpu: OnCpu,
+    gpu: OnGpu,
+}
+
+/// A frame, and what it was drawn with.
+pub struct Drawn {
+    /// The picture.
+    pub frame: Frame,
+    /// Textures of the passes.
+    pub maps: Vec<Layer>,
+    /// What drew it.
+    pub machine: String,
+}
+
+/// What to draw: one look at one stage.
+pub struct Subject<'a> {
+    /// The scene as it was read.
+    pub scene: &'a Arc<Scene>,
+    /// How it is looked at.
+    pub look: &'a Look,
+    /// How it is drawn.
+    pub settings: Settings,
+    /// Whether the textures of the passes are wanted.
+    pub wants_maps: bool,
+}
+
+impl Artist {
+    /// Draws a look of a wish. None if something else is wanted by now.
+    pub fn paint(
+        &mut self,
+        device: &mut Device,
+        wish: &Wish,
+        side: usize,
+        stage: Stage,
+        desk: &Desk,
+    ) -> Result<Option<Painted>, String> {
+        let start = Instant::now();
+        let look = &wish.looks[side];
+        let mut settings = stage.settings(&look.drawing, wish.size);
+        settings.aovs = wish.shown.layers(look.drawing.technique);
+        let finish =
+            |frame: Frame, quality: String, maps: Vec<Layer>, machine: String, is_final: bool| Painted {
+                number: wish.number,
+                side,
+                camera: look.camera,
+                quality,
+                is_final,
+                image: screen::picture(&frame, look, &wish.shown, &wish.scene),
+                maps: Arc::new(maps),
+                machine,
+                time: start.elapsed(),
+                frame: Arc::new(frame),
+            };
+        let preview = |frame, quality| finish(frame, quality, Vec::new(), "the processor".to_owned(), false);
+        let watch = Watch::new(desk, &preview);
+        let subject = Subject { scene: &wish.scene, look, settings, wants_maps: wish.shown.wants_maps() };
+        match self.draw(device, &subject, &watch) {
+            Ok(Drawn { frame, maps, machine }) => {
+                let is_final = stage == Stage::Fine;
+                Ok(Some(finish(frame, stage.name().to_owned(), maps, machine, is_final)))
+            }
+            Err(RenderError::Stopped) => Ok(None),
+            Err(error) => Err(error.to_string()),
+        }
+    }
+
+    /// On the machine that was chosen; `auto` goes from a graphics processor that fails to the processor.
+    fn draw(&mut self, device: &mut Device, subject: &Subject, watch: &Watch) -> Result<Drawn, RenderError> {
+        let technique = subject.look.drawing.technique;
+        let backend = subject.look.drawing.backend;
+        if backend == Backend::Cpu || (backend == Backend::Auto && !GpuRenderer::knows(technique)) {
+            return self.cpu.draw(subject, watch);
+        }
+        match self.gpu.draw(device, subject, watch) {
+            Ok(drawn) => Ok(drawn),
+            Err(RenderError::Backend { reason }) if backend == Backend::Auto => {
+                let mut drawn = self.cpu.draw(subject, watch)?;
+                drawn.frame.warnings.push(format!("drawn on the processor, because {reason}"));
+                Ok(drawn)
+            }
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// Renders from nothing, for techniques that keep nothing.
+pub fn from_nothing(renderer: &dyn Renderer, subject: &Subject, watch: &Watch) -> Result<Drawn, RenderError> {
+    let scene = subject.look.applied_to(subject.scene);
+    let frame = renderer.render(&scene, &subject.settings, watch)?;
+    Ok(Drawn { frame, maps: Vec::new(), machine: renderer.adapter() })
+}

@@ -1,0 +1,190 @@
+//! Draws in the background: the latest wish first as a quick draft, then ever better while nothing changes.
+
+mod artist;
+mod on_cpu;
+mod on_gpu;
+mod stage;
+mod watch;
+
+use super::look::Look;
+use super::mailbox::Mailbox;
+use super::shown::Shown;
+use artist::Artist;
+use cutis_render::{Frame, Layer};
+use cutis_scene::{Camera, Scene};
+use eframe::egui;
+use on_gpu::Device;
+use stage::Stage;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+/// What is to be drawn.
+#[derive(Debug, Clone)]
+pub struct Wish {
+    /// Grows with every wish; tells whether what was drawn is still what is wanted.
+    pub number: u64,
+    /// The scene as it was read.
+    pub scene: Arc<Scene>,
+    /// How it is looked at: once, or twice side by side.
+    pub looks: Vec<Look>,
+    /// Width and height of the picture, pixels.
+    pub size: [u32; 2],
+    /// What is to be seen.
+    pub shown: Shown,
+    /// Whether only the best picture is wanted.
+    pub is_for_a_file: bool,
+}
+
+impl Wish {
+    /// Whether it asks for the same picture.
+    pub fn is_same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.scene, &other.scene)
+            && self.looks == other.looks
+            && self.size == other.size
+            && self.shown == other.shown
+            && self.is_for_a_file == other.is_for_a_file
+    }
+}
+
+/// What was drawn.
+#[derive(Debug, Clone)]
+pub struct Painted {
+    /// Number of the wish.
+    pub number: u64,
+    /// Which of its looks.
+    pub side: usize,
+    /// From where it is seen.
+    pub camera: Camera,
+    /// How good it is by now, in words.
+    pub quality: String,
+    /// Whether nothing better will come.
+    pub is_final: bool,
+    /// Ready for the screen.
+    pub image: egui::ColorImage,
+    /// The light of it, with times and warnings.
+    pub frame: Arc<Frame>,
+    /// Textures of the passes, where they are shown.
+    pub maps: Arc<Vec<Layer>>,
+    /// What drew it.
+    pub machine: String,
+    /// How long it took.
+    pub time: Duration,
+}
+
+/// News from the painter.
+#[derive(Debug, Clone)]
+pub enum News {
+    /// A picture.
+    Painted(Box<Painted>),
+    /// There is none, and why.
+    Failed {
+        /// Number of the wish.
+        number: u64,
+        /// Which of its looks.
+        side: usize,
+        /// In words.
+        reason: String,
+    },
+}
+
+/// The one who draws, on a thread of its own.
+#[derive(Debug)]
+pub struct Painter {
+    wishes: Arc<Mailbox<Wish>>,
+    news: Arc<Mutex<Vec<News>>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Painter {
+    /// Starts it; `context` is woken when there is news.
+    pub fn start(context: egui::Context) -> std::io::Result<Self> {
+        let (wishes, news) = (Arc::new(Mailbox::default()), Arc::new(Mutex::new(Vec::new())));
+        let desk = Desk { wishes: Arc::clone(&wishes), news: Arc::clone(&news), context };
+        let thread = std::thread::Builder::new().name("painter".to_owned()).spawn(move || work(&desk))?;
+        Ok(Self { wishes, news, thread: Some(thread) })
+    }
+
+    /// Asks for a picture; whatever was asked before is forgotten.
+    pub fn ask(&self, wish: Wish) {
+        self.wishes.put(wish);
+    }
+
+    /// What has come in since the last time.
+    pub fn news(&self) -> Vec<News> {
+        std::mem::take(&mut *self.news.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl Drop for Painter {
+    fn drop(&mut self) {
+        self.wishes.close();
+        if let Some(thread) = self.thread.take() {
+            // It has told its own end; there is nobody left to be told.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Where wishes come in and news goes out.
+struct Desk {
+    wishes: Arc<Mailbox<Wish>>,
+    news: Arc<Mutex<Vec<News>>>,
+    context: egui::Context,
+}
+
+impl Desk {
+    fn tell(&self, news: News) {
+        self.news.lock().unwrap_or_else(PoisonError::into_inner).push(news);
+        self.context.request_repaint();
+    }
+}
+
+fn work(desk: &Desk) {
+    let mut studio = Studio::default();
+    while let Some(wish) = desk.wishes.wait() {
+        let drawing = std::panic::AssertUnwindSafe(|| studio.fulfil(&wish, desk));
+        if let Err(panic) = std::panic::catch_unwind(drawing) {
+            studio = Studio::default();
+            let why = panic.downcast_ref::<String>().cloned();
+            let why = why.or_else(|| panic.downcast_ref::<&str>().map(|&s| s.to_owned()));
+            let reason = format!("a fault of cutis worth reporting: {}", why.unwrap_or_default());
+            (0..wish.looks.len()).for_each(|side| {
+                desk.tell(News::Failed { number: wish.number, side, reason: reason.clone() });
+            });
+        }
+    }
+}
+
+/// Where it is drawn: each side keeps what its next picture can be drawn from.
+#[derive(Default)]
+struct Studio {
+    device: Device,
+    sides: [Artist; 2],
+}
+
+impl Studio {
+    /// Draws all looks at every stage until something else is wanted.
+    fn fulfil(&mut self, wish: &Wish, desk: &Desk) {
+        let mut failed = [false; 2];
+        for stage in Stage::ALL {
+            for (side, look) in wish.looks.iter().enumerate() {
+                if desk.wishes.has_news() {
+                    return;
+                }
+                let is_skipped = wish.is_for_a_file && stage != Stage::Fine;
+                if failed[side] || is_skipped || !stage.is_for(look.drawing.technique) {
+                    continue;
+                }
+                match self.sides[side].paint(&mut self.device, wish, side, stage, desk) {
+                    Ok(Some(painted)) => desk.tell(News::Painted(Box::new(painted))),
+                    Ok(None) => return,
+                    Err(reason) => {
+                        failed[side] = true;
+                        desk.tell(News::Failed { number: wish.number, side, reason });
+                    }
+                }
+            }
+        }
+    }
+}

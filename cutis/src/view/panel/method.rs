@@ -1,0 +1,48 @@
+//! Technique, backend, textures and what is seen of them.
+
+use crate::backend::Backend;
+use crate::cli::DIFFUSIONS;
+use crate::view::app::Viewer;
+use crate::view::shown::View;
+use cutis_render::TechniqueName;
+use eframe::egui::{ComboBox, Ui};
+use std::fmt::Display;
+
+/// Sizes of the irradiance texture that can be chosen, texels.
+const SIZES: [u32; 5] = [256, 512, 1024, 2048, 4096];
+
+/// Shows it.
+pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
+    let drawing = &mut viewer.looks[viewer.edited].drawing;
+    choice(ui, "technique", &mut drawing.technique, TechniqueName::ALL);
+    choice(ui, "diffusion", &mut drawing.diffusion, &DIFFUSIONS);
+    choice(ui, "backend", &mut drawing.backend, &Backend::ALL);
+    choice(ui, "irradiance texture [texels]", &mut drawing.irradiance_size, &SIZES);
+    let views = viewer.views();
+    ComboBox::from_label("view (d)").selected_text(name(viewer.shown.view)).show_ui(ui, |ui| {
+        for view in views {
+            ui.selectable_value(&mut viewer.shown.view, view, name(view));
+        }
+    });
+    ui.checkbox(&mut viewer.shown.wireframe, "triangles (w)");
+    if ui.button("see the whole scene").clicked() {
+        viewer.frame_scene();
+    }
+}
+
+fn choice<T: Display + PartialEq + Copy>(ui: &mut Ui, label: &str, value: &mut T, all: &[T]) {
+    ComboBox::from_label(label).selected_text(value.to_string()).show_ui(ui, |ui| {
+        for one in all {
+            ui.selectable_value(value, *one, one.to_string());
+        }
+    });
+}
+
+fn name(view: View) -> String {
+    match view {
+        View::Picture => "picture".to_owned(),
+        View::Maps => "maps of all passes".to_owned(),
+        View::Map(aov) => format!("map {aov}"),
+        View::Layer(aov) => aov.to_string(),
+    }
+}

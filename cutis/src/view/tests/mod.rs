@@ -1,0 +1,5 @@
+//! The window, driven without one.
+
+mod drive;
+mod random;
+mod views;

@@ -1,0 +1,252 @@
+//! Every view, every key, every preset: what is asked for is what is drawn.
+
+use super::drive::{drag, drop_file, message, press, settle, window};
+use crate::backend::Backend;
+use crate::view::shown::View;
+use cutis_render::Aov;
+use eframe::egui::{Key, Modifiers, PointerButton, Vec2, pos2, vec2};
+use egui_kittest::kittest::Queryable;
+
+const SIZE: [f32; 2] = [640.0, 420.0];
+
+/// The picture on the screen, as bytes.
+fn pixels(window: &super::drive::Window) -> Vec<u8> {
+    let painted = window.state().sides[0].painted.as_ref().expect("something is drawn");
+    painted.image.pixels.iter().flat_map(|p| p.to_array()).collect()
+}
+
+#[test]
+fn the_head_is_drawn_and_turns_with_the_mouse() {
+    let mut window = window(SIZE, Backend::Cpu);
+    settle(&mut window);
+    let before = pixels(&window);
+    assert!(before.chunks(4).any(|p| p[0] > 100), "a head is seen");
+    let camera = window.state().looks[0].camera;
+    for (button, modifiers) in [
+        (PointerButton::Primary, Modifiers::NONE),
+        (PointerButton::Primary, Modifiers::ALT),
+        (PointerButton::Secondary, Modifiers::ALT),
+        (PointerButton::Middle, Modifiers::ALT),
+    ] {
+        let camera = window.state().looks[0].camera;
+        drag(&mut window, pos2(100.0, 150.0), vec2(40.0, 15.0), button, modifiers);
+        assert_ne!(window.state().looks[0].camera, camera, "{button:?} {modifiers:?}");
+    }
+    settle(&mut window);
+    assert_ne!(pixels(&window), before);
+    window.state_mut().looks[0].camera = camera;
+    settle(&mut window);
+    assert_eq!(pixels(&window), before, "back where it was, the picture is what it was");
+}
+
+#[test]
+fn shift_moves_the_light_and_not_the_camera() {
+    let mut window = window(SIZE, Backend::Cpu);
+    settle(&mut window);
+    let (before, look) = (pixels(&window), window.state().looks[0].clone());
+    drag(&mut window, pos2(100.0, 150.0), vec2(60.0, 30.0), PointerButton::Primary, Modifiers::SHIFT);
+    assert_eq!(window.state().looks[0].camera, look.camera);
+    assert_ne!(window.state().looks[0].lights, look.lights);
+    settle(&mut window);
+    assert_ne!(pixels(&window), before);
+}
+
+#[test]
+fn every_view_is_drawn_and_tells_its_values() {
+    let mut window = window(SIZE, Backend::Cpu);
+    let views = window.state().views();
+    let mut pictures = Vec::new();
+    for view in views {
+        settle(&mut window);
+        assert_eq!(window.state().shown.view, view);
+        let side = &window.state().sides[0];
+        assert!(side.failure.is_none(), "{view:?}: {:?}", side.failure);
+        match view {
+            View::Maps => {
+                assert_eq!(side.maps.len(), 10, "irradiance, stretch, six levels, thickness, charts")
+            }
+            // Gaussians narrower than the few texels here are wide change nothing.
+            View::Layer(Aov::Blur(0..=3)) => {}
+            View::Layer(aov) => {
+                let value = side.value([0.5, 0.5]).expect("the middle has a value");
+                assert!(value.starts_with(&aov.to_string()), "{value}");
+                pictures.push((pixels(&window), aov));
+            }
+            _ => assert!(side.value([0.5, 0.5]).expect("a value").contains("W/(m² sr)")),
+        }
+        press(&mut window, Key::D);
+    }
+    assert_eq!(window.state().shown.view, View::Picture, "round and round");
+    for (i, (picture, aov)) in pictures.iter().enumerate() {
+        let twin = pictures[..i].iter().find(|(other, _)| other == picture);
+        assert!(twin.is_none(), "{aov} looks like {}", twin.map_or(*aov, |(_, other)| *other));
+    }
+}
+
+#[test]
+fn a_map_is_seen_in_full_and_a_gaussian_can_be_left_out() {
+    let mut window = window(SIZE, Backend::Cpu);
+    settle(&mut window);
+    let before = pixels(&window);
+    window.state_mut().looks[0].drawing.muted_gaussians = vec![0, 1];
+    settle(&mut window);
+    let without = pixels(&window);
+    let sum = |bytes: &[u8]| bytes.iter().map(|&b| u64::from(b)).sum::<u64>();
+    assert!(sum(&without) < sum(&before), "less light comes out");
+    for aov in crate::view::shown::texture_maps() {
+        window.state_mut().shown.view = View::Map(aov);
+        settle(&mut window);
+        assert!(window.state().sides[0].map(aov).is_some(), "{aov}");
+    }
+}
+
+#[test]
+fn every_preset_is_drawn_and_the_panel_resets() {
+    let mut window = window(SIZE, Backend::Cpu);
+    settle(&mut window);
+    let before = pixels(&window);
+    for preset in ["marble", "ketchup"] {
+        window.state_mut().looks[0].skin.preset = Some(preset.to_owned());
+        window.state_mut().looks[0].skin.free_path = [2.0, 1.0, 0.5];
+        settle(&mut window);
+        assert!(window.state().sides[0].failure.is_none());
+        assert_ne!(pixels(&window), before, "{preset}");
+    }
+    let original = window.state().original.clone();
+    window.state_mut().looks[0] = original;
+    settle(&mut window);
+    assert_eq!(pixels(&window), before);
+}
+
+#[test]
+fn two_looks_are_compared_and_the_truth_refines() {
+    let mut window = window([420.0, 320.0], Backend::Cpu);
+    press(&mut window, Key::M);
+    press(&mut window, Key::S);
+    window.state_mut().edited = 1;
+    press(&mut window, Key::Num2);
+    assert_eq!(window.state().looks[1].drawing.technique, cutis_render::TechniqueName::Truth);
+    assert_eq!(window.state().looks[0].drawing.technique, cutis_render::TechniqueName::TextureSpace);
+    let refined = |window: &super::drive::Window| {
+        window.state().sides[1].painted.as_ref().is_some_and(|p| p.quality.contains("samples"))
+    };
+    let start = std::time::Instant::now();
+    while !refined(&window) {
+        assert!(start.elapsed().as_secs() < 120, "the truth gets no better");
+        std::thread::sleep(std::time::Duration::from_millis(20));
+        window.step();
+    }
+    // While it refines, another wish is fulfilled without waiting for its end.
+    press(&mut window, Key::S);
+    settle(&mut window);
+}
+
+#[test]
+fn what_is_dropped_is_opened_or_refused_in_words() {
+    let mut window = window(SIZE, Backend::Cpu);
+    settle(&mut window);
+    let before = pixels(&window);
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, bytes) in [
+        ("broken.glb", &b"glTF, but not really"[..]),
+        ("broken.obj", b"v 1 2 nonsense"),
+        ("broken.hdr", b"#?RADIANCE"),
+        ("broken.toml", b"[mesh"),
+        ("picture.xyz", b""),
+    ] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).expect("is written");
+        drop_file(&mut window, &path);
+        let told = message(&mut window);
+        assert!(told.contains(name), "{name}: {told}");
+        settle(&mut window);
+        assert_eq!(pixels(&window), before, "{name}: what was there stays");
+    }
+    let triangle = "v 0 0 0\nv 10 0 0\nv 0 10 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+    let path = folder.path().join("triangle.obj");
+    std::fs::write(&path, triangle).expect("is written");
+    drop_file(&mut window, &path);
+    message(&mut window);
+    settle(&mut window);
+    assert_eq!(window.state().scene.objects[0].mesh.triangles.len(), 1);
+    assert_ne!(pixels(&window), before);
+}
+
+#[test]
+fn a_picture_is_written_and_nowhere_is_told() {
+    let mut window = window(SIZE, Backend::Cpu);
+    settle(&mut window);
+    let folder = tempfile::tempdir().expect("a folder");
+    window.state_mut().folder = folder.path().to_owned();
+    press(&mut window, Key::P);
+    let image = image::open(folder.path().join("cutis-0001.png")).expect("is a picture");
+    assert!(image.width() > 100);
+    window.state_mut().folder = folder.path().join("none");
+    press(&mut window, Key::P);
+    assert!(window.state().message.as_deref().is_some_and(|m| m.contains("none")));
+}
+
+#[test]
+fn a_turntable_is_written_and_ends_where_it_began() {
+    let mut window = window([500.0, 200.0], Backend::Cpu);
+    settle(&mut window);
+    let folder = tempfile::tempdir().expect("a folder");
+    window.state_mut().folder = folder.path().to_owned();
+    let camera = window.state().looks[0].camera;
+    window.state_mut().begin_turntable(4);
+    while window.state().turntable.is_some() {
+        settle(&mut window);
+    }
+    assert_eq!(window.state().looks[0].camera, camera);
+    let picture = |n: u32| {
+        let path = folder.path().join(format!("turntable-0001/{n:04}.png"));
+        image::open(path).expect("is a picture").into_rgb8().into_raw()
+    };
+    for n in 1..4 {
+        assert_ne!(picture(n), picture(n + 1));
+    }
+    assert!(!folder.path().join("turntable-0001/0005.png").exists());
+}
+
+#[test]
+fn the_help_lists_every_key_and_everything_can_be_hidden() {
+    let mut window = window([900.0, 700.0], Backend::Cpu);
+    press(&mut window, Key::F1);
+    window.step();
+    assert!(window.query_by_label("Keys and mouse").is_some());
+    assert!(window.query_by_label_contains("move the light").is_some());
+    press(&mut window, Key::F1);
+    assert!(window.query_by_label("Skin").is_some());
+    press(&mut window, Key::H);
+    window.step();
+    assert!(window.query_by_label("Skin").is_none());
+    press(&mut window, Key::H);
+    press(&mut window, Key::M);
+    window.step();
+    assert!(window.query_by_label("Skin").is_none());
+}
+
+#[test]
+fn a_window_of_one_point_and_back() {
+    let mut window = window(SIZE, Backend::Cpu);
+    settle(&mut window);
+    let before = pixels(&window);
+    for size in [[1.0, 1.0], [300.0, 1.0], [1.0, 300.0]] {
+        window.set_size(Vec2::from(size));
+        settle(&mut window);
+    }
+    window.set_size(Vec2::from(SIZE));
+    settle(&mut window);
+    assert_eq!(pixels(&window), before);
+}
+
+#[test]
+fn nothing_is_drawn_anew_when_nothing_changes() {
+    let mut window = window(SIZE, Backend::Cpu);
+    settle(&mut window);
+    let number = |window: &super::drive::Window| window.state().sides[0].painted.as_ref().map(|p| p.number);
+    let before = number(&window);
+    window.run_steps(20);
+    assert_eq!(number(&window), before);
+    assert!(!window.ctx.has_requested_repaint(), "an idle window is not drawn again");
+}

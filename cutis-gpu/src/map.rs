@@ -13,6 +13,8 @@ pub struct Map {
     pub array: wgpu::TextureView,
     /// Each layer on its own, to be drawn into or read.
     pub layers: Vec<wgpu::TextureView>,
+    /// Number of the first of them in the texture.
+    pub first_layer: u32,
 }
 
 impl Map {
@@ -28,6 +30,15 @@ impl Map {
             usage: usages(format),
             view_formats: &[],
         });
+        Self::over(texture, 0, layers)
+    }
+
+    /// Some layers of it, as a map of their own.
+    pub fn part(&self, first: u32, layers: u32) -> Self {
+        Self::over(self.texture.clone(), self.first_layer + first, layers)
+    }
+
+    fn over(texture: wgpu::Texture, first_layer: u32, layers: u32) -> Self {
         let view = |dimension, base_array_layer, count| {
             texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(dimension),
@@ -36,9 +47,10 @@ impl Map {
                 ..wgpu::TextureViewDescriptor::default()
             })
         };
-        let array = view(wgpu::TextureViewDimension::D2Array, 0, layers);
-        let layers = (0..layers).map(|l| view(wgpu::TextureViewDimension::D2, l, 1)).collect();
-        Self { texture, array, layers }
+        let array = view(wgpu::TextureViewDimension::D2Array, first_layer, layers);
+        let each = first_layer..first_layer + layers;
+        let layers = each.map(|l| view(wgpu::TextureViewDimension::D2, l, 1)).collect();
+        Self { texture, array, layers, first_layer }
     }
 
     /// A square texture of zeros.
@@ -63,7 +75,7 @@ impl Map {
         let size = wgpu::Extent3d { depth_or_array_layers: 1, ..self.texture.size() };
         let texel_bytes = self.texture.format().block_copy_size(None).expect("no format here is compressed");
         let mut target = self.texture.as_image_copy();
-        target.origin.z = layer;
+        target.origin.z = self.first_layer + layer;
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
             bytes_per_row: Some(size.width * texel_bytes),

@@ -9,7 +9,7 @@ pub struct Blueprint<'a> {
     pub name: &'static str,
     /// WGSL.
     pub source: &'a str,
-    /// Entry points of the vertex and the fragment shader.
+    /// Entry points of the vertex and the fragment shader; the latter is not run where there are no targets.
     pub entries: [&'a str; 2],
     /// Formats that are drawn into.
     pub targets: &'a [wgpu::TextureFormat],
@@ -66,7 +66,7 @@ impl Pipeline {
             primitive: wgpu::PrimitiveState::default(),
             depth_stencil,
             multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
+            fragment: (!targets.is_empty()).then_some(wgpu::FragmentState {
                 module: &module,
                 entry_point: Some(entries[1]),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),

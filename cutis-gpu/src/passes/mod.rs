@@ -6,6 +6,7 @@ pub mod diffusion;
 pub mod downsample;
 pub mod gather;
 pub mod irradiance;
+pub mod levels;
 pub mod resolve;
 pub mod shadow;
 pub mod shares;
@@ -114,7 +115,19 @@ fn over_charts(
     targets: &[&wgpu::TextureView],
     clear: bool,
 ) -> Step {
-    let mut all = vec![(0, Bound::Buffer(&charts.tiles))];
+    over_tiles(gpu, pipeline, (&charts.tiles, charts.runs), bound, targets, clear)
+}
+
+/// The same over a list of so many runs of tiles.
+fn over_tiles(
+    gpu: &Gpu,
+    pipeline: &Pipeline,
+    (tiles, runs): (&wgpu::Buffer, u32),
+    bound: &[(u32, Bound)],
+    targets: &[&wgpu::TextureView],
+    clear: bool,
+) -> Step {
+    let mut all = vec![(0, Bound::Buffer(tiles))];
     all.extend_from_slice(bound);
     Step::Draw(Draw {
         pass: pipeline.name,
@@ -125,6 +138,6 @@ fn over_charts(
         clear: clear.then_some(wgpu::Color::TRANSPARENT),
         // Two triangles for every run of tiles.
         vertices: 6,
-        instances: charts.runs,
+        instances: runs,
     })
 }

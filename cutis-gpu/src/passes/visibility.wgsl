@@ -41,8 +41,17 @@ const MAX_SLOPE: f32 = 12.0;
 
 @fragment
 fn see_lights(@builtin(position) position: vec4f) -> Visibility {
+    return visibility_at(vec2i(position.xy), true);
+}
+
+/// For lights of which none has an extent: most of the work is left out when this is compiled.
+@fragment
+fn see_sharp_lights(@builtin(position) position: vec4f) -> Visibility {
+    return visibility_at(vec2i(position.xy), false);
+}
+
+fn visibility_at(texel: vec2i, any_extent: bool) -> Visibility {
     var result = Visibility(vec4f(0.0), vec4f(0.0));
-    let texel = vec2i(position.xy);
     if textureLoad(charts, texel, 0).x == NO_CHART {
         return result;
     }
@@ -50,17 +59,23 @@ fn see_lights(@builtin(position) position: vec4f) -> Visibility {
     let point_mm = bitcast<vec3f>(place.xyz);
     let normal = unpack_unit(place.w);
     let lift_mm = textureLoad(stretch_map, texel, 0).z;
-    for (var i = 0u; i < group_of.light_count; i++) {
+    var i = 0u;
+    loop {
         let l = group_of.first_light + i;
         let towards = sample_light(l, point_mm);
         let map = map_of(l);
         let faces = dot(normal, towards.dir_to_light) >= 0.0;
         if faces {
             let shift = random2(vec2u(texel), STREAM + l);
-            result.seen[i] = visible_fraction(map, lights[l].extent, point_mm + normal * lift_mm, normal, shift);
+            let extent = select(0.0, lights[l].extent, any_extent);
+            result.seen[i] = visible_fraction(map, extent, point_mm + normal * lift_mm, normal, shift);
         }
         if !faces {
             result.distance_mm[i] = distance_mm(map, point_mm, normal, towards.dir_to_light);
+        }
+        continuing {
+            i++;
+            break if i >= group_of.light_count;
         }
     }
     return result;
@@ -98,6 +113,11 @@ fn visible_fraction(map: LightMap, extent: f32, point_mm: vec3f, normal: vec3f, 
     if extent <= 0.0 {
         return lit_share(map, to, to.uv);
     }
+    return soft_share(map, extent, to, shift);
+}
+
+/// Share of a disc of light that is seen.
+fn soft_share(map: LightMap, extent: f32, to: Receiver, shift: vec2f) -> f32 {
     let found_mm = blocker_depth_mm(map, extent, to, shift);
     // The horizon is the same at any depth of the cone to the light.
     let hidden_by_mm = select(to.axes_mm.z - 1.0, found_mm, found_mm > 0.0);

@@ -164,6 +164,9 @@ impl GpuScene {
             ));
         }
         for (i, maps) in self.objects.iter().enumerate() {
+            self.steps.push(passes.resolve.nearest_step(gpu, camera, &maps.geometry, &self.depth, i == 0));
+        }
+        for (i, maps) in self.objects.iter().enumerate() {
             let canvas = Canvas {
                 samples: &self.samples,
                 depth: &self.depth,

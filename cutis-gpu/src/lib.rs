@@ -5,6 +5,7 @@
 //! cutis-render: nothing here computes physics of its own. Only what the default limits of WebGPU grant is used.
 
 pub mod error;
+pub mod faults;
 pub mod gpu;
 pub mod map;
 pub mod passes;

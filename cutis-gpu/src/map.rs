@@ -4,6 +4,9 @@ use crate::Gpu;
 use glam::Vec4;
 use half::f16;
 
+/// Bytes of a texel that cannot be copied out: a depth of 32 bits.
+const DEPTH_BYTES: u32 = 4;
+
 /// A square or rectangular texture of one or more layers.
 #[derive(Debug, Clone)]
 pub struct Map {
@@ -20,6 +23,8 @@ pub struct Map {
 impl Map {
     /// A texture of zeros.
     pub fn new(gpu: &Gpu, label: &str, size: [u32; 2], layers: u32, format: wgpu::TextureFormat) -> Self {
+        let texel_bytes = u64::from(format.block_copy_size(None).unwrap_or(DEPTH_BYTES));
+        gpu.count(u64::from(size[0]) * u64::from(size[1]) * u64::from(layers) * texel_bytes);
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: layers },

@@ -4,6 +4,7 @@
 //! without making anything new from one frame to the next. Tables (kernel, rho_dt, filtered environment, taps) come from
 //! cutis-render: nothing here computes physics of its own. Only what the default limits of WebGPU grant is used.
 
+pub mod cost;
 pub mod error;
 pub mod faults;
 pub mod gpu;

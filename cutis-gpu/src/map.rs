@@ -4,27 +4,41 @@ use crate::Gpu;
 use glam::Vec4;
 use half::f16;
 
-/// Bytes of a texel that cannot be copied out: a depth of 32 bits.
-const DEPTH_BYTES: u32 = 4;
-
 /// A square or rectangular texture of one or more layers.
 #[derive(Debug, Clone)]
 pub struct Map {
     /// The texture itself.
     pub texture: wgpu::Texture,
     /// All layers, for shaders that take an array.
-    pub array: wgpu::TextureView,
+    pub array: View,
     /// Each layer on its own, to be drawn into or read.
-    pub layers: Vec<wgpu::TextureView>,
+    pub layers: Vec<View>,
     /// Number of the first of them in the texture.
     pub first_layer: u32,
+}
+
+/// Some layers of a texture, as passes bind them.
+#[derive(Debug, Clone)]
+pub struct View {
+    /// The view itself.
+    pub raw: wgpu::TextureView,
+    /// Texels of all layers that it shows.
+    pub texels: u64,
+    /// Bytes of one of them.
+    pub texel_bytes: u64,
+}
+
+impl View {
+    /// Bytes of all that it shows.
+    pub fn bytes(&self) -> u64 {
+        self.texels * self.texel_bytes
+    }
 }
 
 impl Map {
     /// A texture of zeros.
     pub fn new(gpu: &Gpu, label: &str, size: [u32; 2], layers: u32, format: wgpu::TextureFormat) -> Self {
-        let texel_bytes = u64::from(format.block_copy_size(None).unwrap_or(DEPTH_BYTES));
-        gpu.count(u64::from(size[0]) * u64::from(size[1]) * u64::from(layers) * texel_bytes);
+        gpu.count(u64::from(size[0]) * u64::from(size[1]) * u64::from(layers) * texel_bytes(format));
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: layers },
@@ -44,13 +58,15 @@ impl Map {
     }
 
     fn over(texture: wgpu::Texture, first_layer: u32, layers: u32) -> Self {
-        let view = |dimension, base_array_layer, count| {
-            texture.create_view(&wgpu::TextureViewDescriptor {
+        let view = |dimension, base_array_layer, count| View {
+            raw: texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(dimension),
                 base_array_layer,
                 array_layer_count: Some(count),
                 ..wgpu::TextureViewDescriptor::default()
-            })
+            }),
+            texels: u64::from(texture.width()) * u64::from(texture.height()) * u64::from(count),
+            texel_bytes: texel_bytes(texture.format()),
         };
         let array = view(wgpu::TextureViewDimension::D2Array, first_layer, layers);
         let each = first_layer..first_layer + layers;
@@ -90,7 +106,7 @@ impl Map {
     }
 
     /// The only layer.
-    pub fn view(&self) -> &wgpu::TextureView {
+    pub fn view(&self) -> &View {
         &self.layers[0]
     }
 
@@ -103,6 +119,11 @@ impl Map {
     pub fn height(&self) -> u32 {
         self.texture.height()
     }
+}
+
+fn texel_bytes(format: wgpu::TextureFormat) -> u64 {
+    // What cannot be copied is a depth of 32 bits.
+    u64::from(format.block_copy_size(None).unwrap_or(4))
 }
 
 /// Everything is read; what can be is drawn into.

@@ -118,12 +118,7 @@ fn structs_of_the_passes_match_wgsl() {
         "Slab",
         [weight, variance_mm2, layer, before, before_is_finer, pad0]
     );
-    same_layout!(
-        Slabs,
-        shaders::TRANSMISSION,
-        "Slabs",
-        [all, count, finer_layer, object, many_lights]
-    );
+    same_layout!(Slabs, shaders::TRANSMISSION, "Slabs", [all, count, finer_layer, object, many_lights]);
     same_layout!(Smoothing, shaders::SMOOTH, "Smoothing", [step, reach, pad0, pad1]);
     same_layout!(Wanted, shaders::RESOLVE, "Wanted", [layer, pad0, pad1, pad2]);
     same_layout!(Pixels, shaders::DOWNSAMPLE, "Pixels", [grid, pad0, pad1, pad2]);

@@ -2,7 +2,7 @@
 //! each Gaussian from the one before, wide ones in smaller textures.
 
 use crate::Gpu;
-use crate::map::Map;
+use crate::map::{Map, View};
 use crate::passes::levels::Levels;
 use crate::passes::over_charts;
 use crate::pipeline::{Blueprint, Bound, Pipeline};
@@ -233,7 +233,7 @@ impl<'a> Way<'a> {
         fine: &ChartTexture,
         halved: Halved,
         source: &Map,
-        target: &wgpu::TextureView,
+        target: &View,
     ) -> Step {
         let numbers = self.gpu.uniform("halved", &halved);
         let bound = [

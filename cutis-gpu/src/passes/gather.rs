@@ -2,6 +2,7 @@
 //! texels, and what they read is the same but for one more bilinear read.
 
 use crate::Gpu;
+use crate::map::View;
 use crate::passes::levels::{Levels, MAX_GAUSSIANS};
 use crate::passes::over_charts;
 use crate::pipeline::{Blueprint, Bound, Pipeline};
@@ -56,13 +57,7 @@ impl GatherPass {
     }
 
     /// Adds up all Gaussians, size by size.
-    pub fn steps(
-        &self,
-        gpu: &Gpu,
-        kernel: &Kernel,
-        levels: &Levels,
-        target: &wgpu::TextureView,
-    ) -> Vec<Step> {
+    pub fn steps(&self, gpu: &Gpu, kernel: &Kernel, levels: &Levels, target: &View) -> Vec<Step> {
         let finest = &levels.all[0];
         let mut steps = Vec::new();
         for (number, size) in levels.sizes.iter().enumerate() {
@@ -94,8 +89,7 @@ impl GatherPass {
 
 /// Those whose levels have size number `size`.
 fn gaussians(kernel: &Kernel, levels: &Levels, size: usize) -> Gaussians {
-    let mut gaussians =
-        Gaussians { finer_layer: levels.finer_than(size).last_layer, ..Gaussians::zeroed() };
+    let mut gaussians = Gaussians { finer_layer: levels.finer_than(size).last_layer, ..Gaussians::zeroed() };
     for (i, weight) in kernel.weights.iter().enumerate().filter(|(i, _)| levels.size_of(*i) == size) {
         let layer = levels.all[i + 1].light.first_layer;
         gaussians.all[gaussians.count as usize] = Gaussian { weight: weight.to_array(), layer };

@@ -15,6 +15,7 @@ pub mod transmission;
 pub mod visibility;
 
 use crate::Gpu;
+use crate::map::View;
 use crate::pipeline::{Bound, Pipeline};
 use crate::scene::charts::ChartTexture;
 use crate::step::{Draw, Step};
@@ -112,7 +113,7 @@ fn over_charts(
     pipeline: &Pipeline,
     charts: &ChartTexture,
     bound: &[(u32, Bound)],
-    targets: &[&wgpu::TextureView],
+    targets: &[&View],
     clear: bool,
 ) -> Step {
     over_tiles(gpu, pipeline, (&charts.tiles, charts.runs), bound, targets, clear)
@@ -124,14 +125,13 @@ fn over_tiles(
     pipeline: &Pipeline,
     (tiles, runs): (&wgpu::Buffer, u32),
     bound: &[(u32, Bound)],
-    targets: &[&wgpu::TextureView],
+    targets: &[&View],
     clear: bool,
 ) -> Step {
     let mut all = vec![(0, Bound::Buffer(tiles))];
     all.extend_from_slice(bound);
     Step::Draw(Draw {
-        pass: pipeline.name,
-        pipeline: pipeline.raw.clone(),
+        pipeline: pipeline.clone(),
         bind_groups: vec![pipeline.bind(gpu, 0, &all)],
         targets: targets.iter().map(|&view| view.clone()).collect(),
         depth: None,

@@ -5,7 +5,7 @@ use crate::Gpu;
 use crate::map::Map;
 use crate::passes::Samplers;
 use crate::passes::levels::Level;
-use crate::pipeline::{Blueprint, Bound, Pipeline};
+use crate::pipeline::{Binding, Blueprint, Bound, Pipeline};
 use crate::scene::charts::ChartTexture;
 use crate::scene::environment::EnvironmentMaps;
 use crate::scene::geometry::Geometry;
@@ -143,8 +143,7 @@ impl ResolvePass {
             (2, Bound::Buffer(camera)),
         ];
         Step::Draw(Draw {
-            pass: self.nearest.name,
-            pipeline: self.nearest.raw.clone(),
+            pipeline: self.nearest.clone(),
             bind_groups: vec![self.nearest.bind(gpu, 0, &bound)],
             targets: Vec::new(),
             depth: Some((depth.view().clone(), first)),
@@ -196,8 +195,7 @@ impl ResolvePass {
             (3, Bound::Sampler(&samplers.around_sky)),
         ];
         Step::Draw(Draw {
-            pass: self.sky.name,
-            pipeline: self.sky.raw.clone(),
+            pipeline: self.sky.clone(),
             bind_groups: vec![self.sky.bind(gpu, 0, &bound)],
             targets: vec![samples.view().clone()],
             depth: None,
@@ -208,7 +206,7 @@ impl ResolvePass {
     }
 }
 
-fn bind(gpu: &Gpu, pipeline: &Pipeline, inputs: &ResolveInputs) -> wgpu::BindGroup {
+fn bind(gpu: &Gpu, pipeline: &Pipeline, inputs: &ResolveInputs) -> Binding {
     let ResolveInputs { samplers, environment, geometry, material, charts, .. } = inputs;
     let bound = [
         (0, Bound::Buffer(&geometry.vertices)),
@@ -239,14 +237,13 @@ fn bind(gpu: &Gpu, pipeline: &Pipeline, inputs: &ResolveInputs) -> wgpu::BindGro
 
 fn draw(
     pipeline: &Pipeline,
-    bind_groups: Vec<wgpu::BindGroup>,
+    bind_groups: Vec<Binding>,
     inputs: &ResolveInputs,
     canvas: &Canvas,
     clear_depth: bool,
 ) -> Step {
     Step::Draw(Draw {
-        pass: pipeline.name,
-        pipeline: pipeline.raw.clone(),
+        pipeline: pipeline.clone(),
         bind_groups,
         targets: vec![canvas.samples.view().clone()],
         depth: Some((canvas.depth.view().clone(), clear_depth)),

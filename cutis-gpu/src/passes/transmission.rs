@@ -2,7 +2,7 @@
 //! translucent shadow maps instead of rays.
 
 use crate::Gpu;
-use crate::map::Map;
+use crate::map::{Map, View};
 use crate::passes::atlas::AtlasMaps;
 use crate::passes::levels::{Levels, MAX_GAUSSIANS};
 use crate::passes::over_tiles;
@@ -151,14 +151,13 @@ impl TransmissionPass {
         gpu: &Gpu,
         inputs: &TransmissionInputs,
         (size, slabs): (usize, &wgpu::Buffer),
-        target: &wgpu::TextureView,
+        target: &View,
         clear: bool,
     ) -> Step {
         let all = bound(inputs, size, slabs);
         let read: Vec<_> = all.into_iter().filter(|(binding, _)| MARK_READS.contains(binding)).collect();
         Step::Draw(Draw {
-            pass: self.mark.name,
-            pipeline: self.mark.raw.clone(),
+            pipeline: self.mark.clone(),
             bind_groups: vec![self.mark.bind(gpu, 0, &read)],
             targets: vec![target.clone()],
             depth: None,
@@ -175,7 +174,7 @@ impl TransmissionPass {
         inputs: &TransmissionInputs,
         (size, slabs): (usize, &wgpu::Buffer),
         marks: &Map,
-        target: &wgpu::TextureView,
+        target: &View,
         clear: bool,
     ) -> Step {
         let mut all = bound(inputs, size, slabs);

@@ -2,7 +2,7 @@
 //! (`visibility`, `half_size`), this reads the maps of the lights.
 
 use crate::Gpu;
-use crate::map::Map;
+use crate::map::{Map, View};
 use crate::passes::atlas::AtlasMaps;
 use crate::passes::over_charts;
 use crate::passes::shadow::ShadowMaps;
@@ -63,7 +63,7 @@ impl VisibilityPass {
         (lights, shadows): (&wgpu::Buffer, &ShadowMaps),
         atlas: &AtlasMaps,
         charts: &ChartTexture,
-        targets: [&wgpu::TextureView; 2],
+        targets: [&View; 2],
     ) -> Step {
         let numbers = gpu.uniform("group of lights", &group);
         let bound = [

@@ -10,6 +10,7 @@ pub mod material;
 pub mod object;
 pub mod shared;
 
+use crate::cost::Cost;
 use crate::map::Map;
 use crate::passes::Passes;
 use crate::passes::resolve::{Canvas, PICTURE};
@@ -202,6 +203,11 @@ impl GpuScene {
     /// Bytes of all textures and buffers that it keeps, those of single frames left out.
     pub fn memory_bytes(&self) -> u64 {
         self.memory_bytes
+    }
+
+    /// What every step of a frame costs at least, while the geometry stays.
+    pub fn costs(&self) -> Vec<Cost> {
+        self.steps.iter().map(Cost::of).collect()
     }
 
     /// Draws a frame, without waiting for it.

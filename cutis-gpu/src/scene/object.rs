@@ -4,11 +4,11 @@ use super::charts::{ChartTexture, surface_texture};
 use super::geometry::Geometry;
 use super::material::MaterialMaps;
 use super::shared::Shared;
-use crate::map::Map;
+use crate::map::{Map, View};
 use crate::passes::atlas::AtlasMaps;
 use crate::passes::diffusion::shortened;
-use crate::passes::levels::{Level, Levels};
 use crate::passes::irradiance::IrradianceInputs;
+use crate::passes::levels::{Level, Levels};
 use crate::passes::resolve::ResolveInputs;
 use crate::passes::shares::ShareGroup;
 use crate::passes::transmission::TransmissionInputs;
@@ -230,7 +230,7 @@ impl Lighting<'_> {
         shares
     }
 
-    fn visibility(&self, group: u32, distances: &wgpu::TextureView) -> Step {
+    fn visibility(&self, group: u32, distances: &View) -> Step {
         let Self { gpu, passes, shared, maps, .. } = *self;
         let first = group as usize * LIGHTS_TOGETHER;
         let numbers = Group {

@@ -50,7 +50,7 @@ fn frames(criterion: &mut Criterion) {
         let ready = renderer.scene(&scene, &low(), &Silent).expect("is uploaded");
         group.bench_function(format!("{} frame, low", renderer.adapter()), |b| {
             b.iter(|| {
-                ready.draw(&renderer.gpu);
+                ready.draw(&renderer.gpu).expect("is drawn");
                 renderer.gpu.wait().expect("the device is there");
             });
         });

@@ -35,6 +35,22 @@ pub enum GpuError {
         /// The limit.
         limit: u64,
     },
+    /// The device has no room.
+    #[error(
+        "the graphics adapter ran out of memory when {} MiB were asked for: a smaller --irradiance-size, or --quality low, \
+         takes less",
+        asked_bytes >> 20
+    )]
+    OutOfMemory {
+        /// Textures and buffers asked for so far.
+        asked_bytes: u64,
+    },
+    /// The device takes an order for a mistake: ours, or its driver's.
+    #[error("the graphics adapter refused an order: {reason}")]
+    Refused {
+        /// What it said, on one line.
+        reason: String,
+    },
     /// The device gave up.
     #[error("the graphics adapter gave up: {reason}")]
     Lost {

@@ -1,7 +1,10 @@
 //! The device: which adapter, with which limits.
 
 use crate::GpuError;
+use crate::faults::Faults;
 use bytemuck::Pod;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Which adapters will do.
@@ -22,6 +25,8 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// What it runs on.
     pub info: wgpu::AdapterInfo,
+    faults: Faults,
+    asked_bytes: Arc<AtomicU64>,
 }
 
 impl Gpu {
@@ -42,7 +47,7 @@ impl Gpu {
     /// A device that somebody else has made, with the default limits of WebGPU at least.
     pub fn from_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         let info = device.adapter_info();
-        Self { device, queue, info }
+        Self { faults: Faults::of(&device), asked_bytes: Arc::default(), device, queue, info }
     }
 
     fn open(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
@@ -55,7 +60,33 @@ impl Gpu {
         };
         let (device, queue) = pollster::block_on(adapter.request_device(&descriptor))
             .map_err(|e| GpuError::NoDevice { adapter: info.name.clone(), reason: e.to_string() })?;
-        Ok(Self { device, queue, info })
+        Ok(Self::from_device(device, queue))
+    }
+
+    /// The same device with a count of its own of what is asked of it from now on.
+    pub fn counting(&self) -> Self {
+        Self { asked_bytes: Arc::default(), ..self.clone() }
+    }
+
+    /// Bytes of all textures and buffers that were asked for through this.
+    pub fn asked_bytes(&self) -> u64 {
+        self.asked_bytes.load(Ordering::Relaxed)
+    }
+
+    /// Notes that a texture or a buffer was asked for.
+    pub(crate) fn count(&self, bytes: u64) {
+        self.asked_bytes.fetch_add(bytes, Ordering::Relaxed);
+    }
+
+    /// What the device has refused since this was last asked.
+    ///
+    /// # Errors
+    /// The first refusal, if there was one.
+    pub fn check(&self) -> Result<(), GpuError> {
+        self.faults.check().map_err(|error| match error {
+            GpuError::OutOfMemory { .. } => GpuError::OutOfMemory { asked_bytes: self.asked_bytes() },
+            other => other,
+        })
     }
 
     /// Name of the adapter and of what drives it, for reports.
@@ -81,6 +112,7 @@ impl Gpu {
     }
 
     fn buffer(&self, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        self.count(contents.len() as u64);
         let usage = usage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
         self.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents, usage })
     }
@@ -88,10 +120,11 @@ impl Gpu {
     /// Waits until all work is done.
     ///
     /// # Errors
-    /// If the device is lost.
+    /// If the device is lost, or has refused something.
     pub fn wait(&self) -> Result<(), GpuError> {
         let waited = self.device.poll(wgpu::PollType::wait_indefinitely());
-        waited.map(|_| ()).map_err(|e| GpuError::Lost { reason: e.to_string() })
+        waited.map_err(|e| GpuError::Lost { reason: e.to_string() })?;
+        self.check()
     }
 
     /// Whether passes can be timed by the device itself.

@@ -4,7 +4,9 @@
 //! without making anything new from one frame to the next. Tables (kernel, rho_dt, filtered environment, taps) come from
 //! cutis-render: nothing here computes physics of its own. Only what the default limits of WebGPU grant is used.
 
+pub mod cost;
 pub mod error;
+pub mod faults;
 pub mod gpu;
 pub mod map;
 pub mod passes;

@@ -10,14 +10,35 @@ pub struct Map {
     /// The texture itself.
     pub texture: wgpu::Texture,
     /// All layers, for shaders that take an array.
-    pub array: wgpu::TextureView,
+    pub array: View,
     /// Each layer on its own, to be drawn into or read.
-    pub layers: Vec<wgpu::TextureView>,
+    pub layers: Vec<View>,
+    /// Number of the first of them in the texture.
+    pub first_layer: u32,
+}
+
+/// Some layers of a texture, as passes bind them.
+#[derive(Debug, Clone)]
+pub struct View {
+    /// The view itself.
+    pub raw: wgpu::TextureView,
+    /// Texels of all layers that it shows.
+    pub texels: u64,
+    /// Bytes of one of them.
+    pub texel_bytes: u64,
+}
+
+impl View {
+    /// Bytes of all that it shows.
+    pub fn bytes(&self) -> u64 {
+        self.texels * self.texel_bytes
+    }
 }
 
 impl Map {
     /// A texture of zeros.
     pub fn new(gpu: &Gpu, label: &str, size: [u32; 2], layers: u32, format: wgpu::TextureFormat) -> Self {
+        gpu.count(u64::from(size[0]) * u64::from(size[1]) * u64::from(layers) * texel_bytes(format));
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: layers },
@@ -28,17 +49,29 @@ impl Map {
             usage: usages(format),
             view_formats: &[],
         });
-        let view = |dimension, base_array_layer, count| {
-            texture.create_view(&wgpu::TextureViewDescriptor {
+        Self::over(texture, 0, layers)
+    }
+
+    /// Some layers of it, as a map of their own.
+    pub fn part(&self, first: u32, layers: u32) -> Self {
+        Self::over(self.texture.clone(), self.first_layer + first, layers)
+    }
+
+    fn over(texture: wgpu::Texture, first_layer: u32, layers: u32) -> Self {
+        let view = |dimension, base_array_layer, count| View {
+            raw: texture.create_view(&wgpu::TextureViewDescriptor {
                 dimension: Some(dimension),
                 base_array_layer,
                 array_layer_count: Some(count),
                 ..wgpu::TextureViewDescriptor::default()
-            })
+            }),
+            texels: u64::from(texture.width()) * u64::from(texture.height()) * u64::from(count),
+            texel_bytes: texel_bytes(texture.format()),
         };
-        let array = view(wgpu::TextureViewDimension::D2Array, 0, layers);
-        let layers = (0..layers).map(|l| view(wgpu::TextureViewDimension::D2, l, 1)).collect();
-        Self { texture, array, layers }
+        let array = view(wgpu::TextureViewDimension::D2Array, first_layer, layers);
+        let each = first_layer..first_layer + layers;
+        let layers = each.map(|l| view(wgpu::TextureViewDimension::D2, l, 1)).collect();
+        Self { texture, array, layers, first_layer }
     }
 
     /// A square texture of zeros.
@@ -63,7 +96,7 @@ impl Map {
         let size = wgpu::Extent3d { depth_or_array_layers: 1, ..self.texture.size() };
         let texel_bytes = self.texture.format().block_copy_size(None).expect("no format here is compressed");
         let mut target = self.texture.as_image_copy();
-        target.origin.z = layer;
+        target.origin.z = self.first_layer + layer;
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
             bytes_per_row: Some(size.width * texel_bytes),
@@ -73,7 +106,7 @@ impl Map {
     }
 
     /// The only layer.
-    pub fn view(&self) -> &wgpu::TextureView {
+    pub fn view(&self) -> &View {
         &self.layers[0]
     }
 
@@ -86,6 +119,11 @@ impl Map {
     pub fn height(&self) -> u32 {
         self.texture.height()
     }
+}
+
+fn texel_bytes(format: wgpu::TextureFormat) -> u64 {
+    // What cannot be copied is a depth of 32 bits.
+    u64::from(format.block_copy_size(None).unwrap_or(4))
 }
 
 /// Everything is read; what can be is drawn into.

@@ -1,6 +1,8 @@
 //! Pipelines: shader, targets and how to bind what the shader reads.
 
 use crate::Gpu;
+use crate::cost::taps_of;
+use crate::map::View;
 
 /// What a pipeline is made from.
 #[derive(Debug, Clone, Copy)]
@@ -9,8 +11,8 @@ pub struct Blueprint<'a> {
     pub name: &'static str,
     /// WGSL.
     pub source: &'a str,
-    /// Entry points of the vertex and the fragment shader.
-    pub entries: [&'a str; 2],
+    /// Entry points of the vertex and the fragment shader; the latter is not run where there are no targets.
+    pub entries: [&'static str; 2],
     /// Formats that are drawn into.
     pub targets: &'a [wgpu::TextureFormat],
     /// Whether what is drawn is added to what is there.
@@ -26,6 +28,10 @@ pub struct Pipeline {
     pub name: &'static str,
     /// The pipeline itself.
     pub raw: wgpu::RenderPipeline,
+    /// Reads of textures of one invocation: see [`crate::cost`].
+    pub taps: u64,
+    /// Whether what is drawn is added to what is there.
+    pub additive: bool,
 }
 
 /// Format of all depth buffers.
@@ -66,7 +72,7 @@ impl Pipeline {
             primitive: wgpu::PrimitiveState::default(),
             depth_stencil,
             multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
+            fragment: (!targets.is_empty()).then_some(wgpu::FragmentState {
                 module: &module,
                 entry_point: Some(entries[1]),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
@@ -75,11 +81,12 @@ impl Pipeline {
             multiview_mask: None,
             cache: None,
         });
-        Self { name, raw }
+        let shades = if targets.is_empty() { entries[0] } else { entries[1] };
+        Self { name, raw, taps: taps_of(shades), additive }
     }
 
     /// Binds what the shader reads, by the numbers it uses.
-    pub fn bind(&self, gpu: &Gpu, group: u32, bound: &[(u32, Bound)]) -> wgpu::BindGroup {
+    pub fn bind(&self, gpu: &Gpu, group: u32, bound: &[(u32, Bound)]) -> Binding {
         bind(gpu, self.name, &self.raw.get_bind_group_layout(group), bound)
     }
 }
@@ -108,7 +115,7 @@ impl ComputePipeline {
     }
 
     /// Binds what the shader reads and writes, by the numbers it uses.
-    pub fn bind(&self, gpu: &Gpu, bound: &[(u32, Bound)]) -> wgpu::BindGroup {
+    pub fn bind(&self, gpu: &Gpu, bound: &[(u32, Bound)]) -> Binding {
         bind(gpu, self.name, &self.raw.get_bind_group_layout(0), bound)
     }
 }
@@ -119,24 +126,45 @@ pub enum Bound<'a> {
     /// A uniform struct or an array.
     Buffer(&'a wgpu::Buffer),
     /// A texture.
-    Texture(&'a wgpu::TextureView),
+    Texture(&'a View),
     /// How textures are read.
     Sampler(&'a wgpu::Sampler),
 }
 
-fn bind(gpu: &Gpu, label: &str, layout: &wgpu::BindGroupLayout, bound: &[(u32, Bound)]) -> wgpu::BindGroup {
+/// Things that are bound together.
+#[derive(Debug, Clone)]
+pub struct Binding {
+    /// The group itself.
+    pub raw: wgpu::BindGroup,
+    /// Bytes of all that is in it.
+    pub bytes: u64,
+}
+
+impl Bound<'_> {
+    fn bytes(&self) -> u64 {
+        match self {
+            Bound::Buffer(buffer) => buffer.size(),
+            Bound::Texture(view) => view.bytes(),
+            Bound::Sampler(_) => 0,
+        }
+    }
+}
+
+fn bind(gpu: &Gpu, label: &str, layout: &wgpu::BindGroupLayout, bound: &[(u32, Bound)]) -> Binding {
     let entries: Vec<_> = bound
         .iter()
         .map(|&(binding, bound)| {
             let resource = match bound {
                 Bound::Buffer(buffer) => buffer.as_entire_binding(),
-                Bound::Texture(view) => wgpu::BindingResource::TextureView(view),
+                Bound::Texture(view) => wgpu::BindingResource::TextureView(&view.raw),
                 Bound::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
             };
             wgpu::BindGroupEntry { binding, resource }
         })
         .collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries })
+    let descriptor = wgpu::BindGroupDescriptor { label: Some(label), layout, entries: &entries };
+    let bytes = bound.iter().map(|(_, bound)| bound.bytes()).sum();
+    Binding { raw: gpu.device.create_bind_group(&descriptor), bytes }
 }
 
 fn shader(gpu: &Gpu, label: &str, source: &str) -> wgpu::ShaderModule {

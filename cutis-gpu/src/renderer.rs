@@ -21,9 +21,11 @@ impl GpuRenderer {
     /// Opens the best adapter of a kind.
     ///
     /// # Errors
-    /// If there is none, or it gives no device.
+    /// If there is none, it gives no device, or cannot compile the passes.
     pub fn new(adapters: Adapters) -> Result<Self, GpuError> {
-        Ok(Self::with_gpu(Gpu::find(adapters)?))
+        let renderer = Self::with_gpu(Gpu::find(adapters)?);
+        renderer.gpu.check()?;
+        Ok(renderer)
     }
 
     /// On a device that is there already, such as that of a window.

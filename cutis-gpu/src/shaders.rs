@@ -60,6 +60,7 @@ pub const GATHER: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "lib/levels.
 /// Pass `transmission`.
 pub const TRANSMISSION: &str = wgsl!(
     "lib/tiles.wgsl",
+    "lib/thin_tiles.wgsl",
     "lib/charts.wgsl",
     "lib/packing.wgsl",
     "lib/lights.wgsl",
@@ -69,7 +70,8 @@ pub const TRANSMISSION: &str = wgsl!(
     "passes/transmission.wgsl"
 );
 /// Pass `transmission`: smoothing.
-pub const SMOOTH: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "passes/smooth.wgsl");
+pub const SMOOTH: &str =
+    wgsl!("lib/tiles.wgsl", "lib/thin_tiles.wgsl", "lib/charts.wgsl", "passes/smooth.wgsl");
 /// Pass `resolve`.
 pub const RESOLVE: &str = wgsl!(
     "lib/mesh.wgsl",

@@ -1,5 +1,7 @@
 //! What a frame consists of: steps that were prepared once and are encoded every time.
 
+use crate::map::View;
+use crate::pipeline::{Binding, ComputePipeline, Pipeline};
 use crate::timing::Stamps;
 
 /// Most targets of a draw.
@@ -17,16 +19,14 @@ pub enum Step {
 /// A draw into some textures.
 #[derive(Debug)]
 pub struct Draw {
-    /// Name of the pass it belongs to.
-    pub pass: &'static str,
     /// How it is drawn.
-    pub pipeline: wgpu::RenderPipeline,
+    pub pipeline: Pipeline,
     /// What is read.
-    pub bind_groups: Vec<wgpu::BindGroup>,
+    pub bind_groups: Vec<Binding>,
     /// What is drawn into.
-    pub targets: Vec<wgpu::TextureView>,
+    pub targets: Vec<View>,
     /// The depth buffer, if there is one, and whether it is emptied before.
-    pub depth: Option<(wgpu::TextureView, bool)>,
+    pub depth: Option<(View, bool)>,
     /// What the targets hold before; none: what they held.
     pub clear: Option<wgpu::Color>,
     /// Vertices of an instance.
@@ -38,12 +38,10 @@ pub struct Draw {
 /// A computation.
 #[derive(Debug)]
 pub struct Dispatch {
-    /// Name of the pass it belongs to.
-    pub pass: &'static str,
     /// How it is computed.
-    pub pipeline: wgpu::ComputePipeline,
+    pub pipeline: ComputePipeline,
     /// What is read and written.
-    pub bind_group: wgpu::BindGroup,
+    pub bind_group: Binding,
     /// Groups of invocations.
     pub groups: u32,
 }
@@ -52,8 +50,8 @@ impl Step {
     /// Name of the pass it belongs to.
     pub fn pass(&self) -> &'static str {
         match self {
-            Step::Draw(draw) => draw.pass,
-            Step::Compute(dispatch) => dispatch.pass,
+            Step::Draw(draw) => draw.pipeline.name,
+            Step::Compute(dispatch) => dispatch.pipeline.name,
         }
     }
 
@@ -74,14 +72,14 @@ impl Draw {
             Some(wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops })
         };
         let mut targets = [const { None }; MAX_TARGETS];
-        targets.iter_mut().zip(&self.targets).for_each(|(slot, view)| *slot = attachment(view));
+        targets.iter_mut().zip(&self.targets).for_each(|(slot, view)| *slot = attachment(&view.raw));
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some(self.pass),
+            label: Some(self.pipeline.name),
             color_attachments: &targets[..self.targets.len()],
             depth_stencil_attachment: self.depth.as_ref().map(|(view, clear)| {
                 let load = if *clear { wgpu::LoadOp::Clear(1.0) } else { wgpu::LoadOp::Load };
                 let depth_ops = Some(wgpu::Operations { load, store: wgpu::StoreOp::Store });
-                wgpu::RenderPassDepthStencilAttachment { view, depth_ops, stencil_ops: None }
+                wgpu::RenderPassDepthStencilAttachment { view: &view.raw, depth_ops, stencil_ops: None }
             }),
             timestamp_writes: stamps.map(|s| wgpu::RenderPassTimestampWrites {
                 query_set: s.queries,
@@ -91,9 +89,9 @@ impl Draw {
             occlusion_query_set: None,
             multiview_mask: None,
         });
-        pass.set_pipeline(&self.pipeline);
+        pass.set_pipeline(&self.pipeline.raw);
         for (group, bound) in (0..).zip(&self.bind_groups) {
-            pass.set_bind_group(group, bound, &[]);
+            pass.set_bind_group(group, &bound.raw, &[]);
         }
         pass.draw(0..self.vertices, 0..self.instances);
     }
@@ -102,15 +100,15 @@ impl Draw {
 impl Dispatch {
     fn encode(&self, encoder: &mut wgpu::CommandEncoder, stamps: Option<Stamps>) {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some(self.pass),
+            label: Some(self.pipeline.name),
             timestamp_writes: stamps.map(|s| wgpu::ComputePassTimestampWrites {
                 query_set: s.queries,
                 beginning_of_pass_write_index: Some(s.first),
                 end_of_pass_write_index: Some(s.first + 1),
             }),
         });
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.bind_group, &[]);
+        pass.set_pipeline(&self.pipeline.raw);
+        pass.set_bind_group(0, &self.bind_group.raw, &[]);
         pass.dispatch_workgroups(self.groups, 1, 1);
     }
 }

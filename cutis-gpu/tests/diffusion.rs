@@ -5,6 +5,8 @@ mod common;
 use common::{difference, head_in_the_studio, read, renderer, tolerances};
 use cutis_gpu::GpuRenderer;
 use cutis_gpu::map::{Map, half_bytes};
+use cutis_gpu::passes::diffusion::shortened;
+use cutis_gpu::passes::levels::Levels;
 use cutis_gpu::scene::charts::ChartTexture;
 use cutis_optics::presets;
 use cutis_render::Silent;
@@ -17,7 +19,6 @@ use cutis_render::passes::stretch::stretch_mm_per_texel;
 use cutis_scene::{Material, Mesh, Object};
 use glam::{Vec2, Vec3, Vec4};
 use std::sync::Arc;
-use wgpu::TextureFormat as Format;
 
 const SIZE: usize = 512;
 const LIT: [usize; 2] = [SIZE / 2 + 3, SIZE / 2 - 6];
@@ -36,29 +37,30 @@ fn diffuse_on_gpu(
     let (gpu, passes) = common::parts(renderer);
     let size = atlas.size as u32;
     let stretch_mm = stretch_mm_per_texel(object, atlas);
-    let plan = plan(atlas.size, median_texel_mm(&atlas.charts, &stretch_mm), variances_mm2);
+    let texel_mm = median_texel_mm(&atlas.charts, &stretch_mm);
+    let plan = shortened(&plan(atlas.size, texel_mm, variances_mm2), texel_mm);
     let mut charts = vec![Arc::clone(&atlas.charts)];
     for _ in plan.iter().filter(|a| **a == Action::Halve) {
         let half = charts[charts.len() - 1].halved();
         charts.push(Arc::new(half));
     }
     let textures: Vec<_> = charts.iter().map(|c| ChartTexture::new(gpu, c)).collect();
-    let source = Map::square(gpu, "light", size, 1, Format::Rgba16Float);
-    source.write(gpu, 0, &half_bytes(light.iter().copied()));
+    let levels = Levels::new(gpu, &textures, 1, &plan);
+    levels.all[0].light.write(gpu, 0, &half_bytes(light.iter().copied()));
     let stretch = stretch_mm.iter().map(|s| s.extend(0.0).extend(0.0));
     let stretch = Map::of_values(gpu, "stretch", [size, size], stretch);
-    let diffusion = passes.diffusion.steps(gpu, &textures, &source, &stretch, &plan);
+    let diffusion = passes.diffusion.steps(gpu, &textures, &levels, &stretch, &plan, texel_mm);
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     diffusion.taps.iter().chain(&diffusion.blurs).for_each(|step| step.encode(&mut encoder, None));
     gpu.queue.submit([encoder.finish()]);
     let charts_of = |size: u32| {
         Arc::clone(charts.iter().find(|c| c.size == size as usize).expect("a level has one of these sizes"))
     };
-    let level = |level: &cutis_gpu::passes::diffusion::Level| Level {
+    let level = |level: &cutis_gpu::passes::levels::Level| Level {
         charts: charts_of(level.charts.size),
         layers: Arc::new(vec![read(gpu, &level.light, 0)]),
     };
-    Diffused { levels: diffusion.levels.all.iter().map(level).collect() }
+    Diffused { levels: levels.all.iter().map(level).collect() }
 }
 
 /// A rectangle over the whole texture but for a margin of 4 texels.

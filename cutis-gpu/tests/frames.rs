@@ -82,7 +82,7 @@ fn drawing_again_gives_the_same_and_a_moved_camera_another() {
     let small = Settings { width: 48, height: 48, irradiance_size: 128, ..Settings::default() };
     let ready = renderer.scene(&scene, &small, &Silent).expect("is uploaded");
     let picture = || {
-        ready.draw(&renderer.gpu);
+        ready.draw(&renderer.gpu).expect("is drawn");
         ready.picture(&renderer.gpu).expect("is drawn")
     };
     let first = picture();

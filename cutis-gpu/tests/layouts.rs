@@ -2,11 +2,12 @@
 
 use cutis_gpu::passes::diffusion::{Along, Halved, Widening};
 use cutis_gpu::passes::downsample::Pixels;
-use cutis_gpu::passes::gather::Gaussian;
+use cutis_gpu::passes::gather::{Gaussian, Gaussians};
+use cutis_gpu::passes::levels::MAX_GAUSSIANS;
 use cutis_gpu::passes::resolve::{LayerKind, Wanted};
 use cutis_gpu::passes::shadow::Drawn;
 use cutis_gpu::passes::shares::ShareGroup;
-use cutis_gpu::passes::transmission::{Slab, Smoothing};
+use cutis_gpu::passes::transmission::{Slab, Slabs, Smoothing, TEXELS_OF_MARK};
 use cutis_gpu::passes::visibility::Group;
 use cutis_gpu::scene::camera::GpuCamera;
 use cutis_gpu::scene::environment::GpuEnvironment;
@@ -109,14 +110,16 @@ fn structs_of_the_passes_match_wgsl() {
     );
     same_layout!(Along, shaders::BLUR, "Along", [step_texels, pad0, pad1]);
     same_layout!(Halved, shaders::HALVE, "Halved", [layer, factor, pad0, pad1]);
-    same_layout!(Gaussian, shaders::GATHER, "Gaussian", [weight, pad0]);
+    same_layout!(Gaussian, shaders::GATHER, "Gaussian", [weight, layer]);
+    same_layout!(Gaussians, shaders::GATHER, "Gaussians", [all, count, finer_layer, pad0, pad1]);
     same_layout!(
         Slab,
         shaders::TRANSMISSION,
         "Slab",
-        [weight, variance_mm2, object, many_lights, pad0, pad1]
+        [weight, variance_mm2, layer, before, before_is_finer, pad0]
     );
-    same_layout!(Smoothing, shaders::SMOOTH, "Smoothing", [step, pad0, pad1, pad2]);
+    same_layout!(Slabs, shaders::TRANSMISSION, "Slabs", [all, count, finer_layer, object, many_lights]);
+    same_layout!(Smoothing, shaders::SMOOTH, "Smoothing", [step, reach, pad0, pad1]);
     same_layout!(Wanted, shaders::RESOLVE, "Wanted", [layer, pad0, pad1, pad2]);
     same_layout!(Pixels, shaders::DOWNSAMPLE, "Pixels", [grid, pad0, pad1, pad2]);
 }
@@ -138,6 +141,8 @@ fn constant(source: &str, name: &str) -> f64 {
 fn constants_match_wgsl() {
     let expected = [
         (shaders::BLUR, "TILE_TEXELS", passes::TILE_TEXELS as f64),
+        (shaders::GATHER, "MAX_GAUSSIANS", MAX_GAUSSIANS as f64),
+        (shaders::SMOOTH, "TEXELS_OF_MARK", f64::from(TEXELS_OF_MARK)),
         (shaders::GATHER, "NO_CHART", f64::from(u16::MAX)),
         (shaders::SHADOW, "NO_MAP", f64::from(NO_MAP)),
         (shaders::IRRADIANCE, "COSINES", COSINES as f64),

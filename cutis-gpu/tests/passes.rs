@@ -40,7 +40,7 @@ struct Both<'a> {
 impl<'a> Both<'a> {
     fn new(renderer: &'a GpuRenderer, scene: &'a Scene, settings: &Settings) -> Self {
         let gpu = renderer.scene(scene, settings, &Silent).expect("is uploaded");
-        gpu.draw(&renderer.gpu);
+        gpu.draw(&renderer.gpu).expect("is drawn");
         let cpu = LitScene::new(scene, settings, &Silent).expect("draws");
         Self { renderer, gpu, cpu, scene }
     }

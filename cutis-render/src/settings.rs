@@ -70,10 +70,50 @@ impl Default for Settings {
     }
 }
 
+/// How much work a picture is worth: after table 1 of d'Eon, Luebke & Enderton 2007.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quality {
+    /// Maps of 2048² texels, 2500 × 1500 samples, which the paper shows at a smaller size: 1250 × 750 pixels of four here.
+    Full,
+    /// Maps and picture of 1024², one sample a pixel, half of the rays.
+    Low,
+    /// What [`Settings::default`] says.
+    Auto,
+}
+
+impl Quality {
+    /// All of them, in the order in which they are listed.
+    pub const ALL: [Quality; 3] = [Quality::Full, Quality::Low, Quality::Auto];
+}
+
+impl fmt::Display for Quality {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Quality::Full => "full",
+            Quality::Low => "low",
+            Quality::Auto => "auto",
+        })
+    }
+}
+
 /// Largest side of a picture or texture: 16384² texels of four floats are 4 GiB.
 const MAX_SIZE: u32 = 16_384;
 
 impl Settings {
+    /// These with the sizes and numbers of samples of a quality; shadow maps are as large as the irradiance.
+    #[must_use]
+    pub fn with_quality(self, quality: Quality) -> Self {
+        let auto = Self::default();
+        let (width, height, samples_per_pixel, irradiance_size, divisor) = match quality {
+            Quality::Full => (1250, 750, 4, 2048, 1),
+            Quality::Low => (1024, 1024, 1, 1024, 2),
+            Quality::Auto => (auto.width, auto.height, auto.samples_per_pixel, auto.irradiance_size, 1),
+        };
+        let (shadow_samples, ambient_samples) =
+            (auto.shadow_samples / divisor, auto.ambient_samples / divisor);
+        Self { width, height, samples_per_pixel, irradiance_size, shadow_samples, ambient_samples, ..self }
+    }
+
     /// Checks every setting against its range.
     ///
     /// # Errors
@@ -266,6 +306,21 @@ impl fmt::Display for Diffusion {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn qualities_are_those_of_the_papers_table() {
+        let samples = |s: &Settings| {
+            let grid = s.samples_per_pixel.isqrt();
+            [s.width * grid, s.height * grid, s.irradiance_size]
+        };
+        let own = Settings { seed: 7, ..Settings::default() };
+        assert_eq!(samples(&own.clone().with_quality(Quality::Full)), [2500, 1500, 2048]);
+        assert_eq!(samples(&own.clone().with_quality(Quality::Low)), [1024, 1024, 1024]);
+        assert_eq!(own.clone().with_quality(Quality::Auto), own, "the rest is kept");
+        for quality in Quality::ALL {
+            assert_eq!(own.clone().with_quality(quality).check(), Ok(()));
+        }
+    }
 
     #[test]
     fn layer_names_are_read_back() {

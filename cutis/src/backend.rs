@@ -2,7 +2,7 @@
 
 use crate::talk;
 use cutis_gpu::{Adapters, GpuRenderer};
-use cutis_render::{CpuRenderer, Renderer, TechniqueName};
+use cutis_render::{CpuRenderer, RenderError, Renderer, TechniqueName};
 use cutis_scene::Scene;
 use miette::{Result, miette};
 use std::fmt;
@@ -31,6 +31,16 @@ impl Backend {
             return Err(miette!(help = "leave --backend out, or say cpu", "{}", unknown(technique)));
         }
         Ok(())
+    }
+
+    /// Who draws when the renderer that was chosen could not. `None`: nobody else is to.
+    pub fn instead(self, renderer: &dyn Renderer, error: &RenderError) -> Option<Box<dyn Renderer>> {
+        let RenderError::Backend { reason } = error else { return None };
+        if self != Backend::Auto || renderer.backend() == CpuRenderer.backend() {
+            return None;
+        }
+        talk::tell(&format!("backend auto: the processor, because {reason}"));
+        Some(Box::new(CpuRenderer))
     }
 
     /// The renderer for a technique and a scene.
@@ -76,4 +86,45 @@ fn on_any_adapter() -> Result<GpuRenderer> {
 
 fn unknown(technique: TechniqueName) -> String {
     format!("the technique {technique} is not drawn on graphics adapters")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cutis_render::{Frame, Progress, Settings};
+
+    /// A graphics processor that has no room.
+    struct Full;
+
+    impl Renderer for Full {
+        fn backend(&self) -> &'static str {
+            "gpu"
+        }
+
+        fn adapter(&self) -> String {
+            "full".to_owned()
+        }
+
+        fn render(
+            &self,
+            _: &Scene,
+            _: &Settings,
+            _: &dyn Progress,
+        ) -> std::result::Result<Frame, RenderError> {
+            Err(no_room())
+        }
+    }
+
+    fn no_room() -> RenderError {
+        RenderError::Backend { reason: "there is no room".to_owned() }
+    }
+
+    #[test]
+    fn only_auto_falls_back_and_only_from_a_machine_that_cannot() {
+        let instead = |backend: Backend, error| backend.instead(&Full, &error).map(|r| r.backend());
+        assert_eq!(instead(Backend::Auto, no_room()), Some("cpu"));
+        assert_eq!(instead(Backend::Gpu, no_room()), None);
+        assert_eq!(instead(Backend::Auto, RenderError::EmptyScene), None);
+        assert!(Backend::Auto.instead(&CpuRenderer, &no_room()).is_none());
+    }
 }

@@ -14,6 +14,7 @@ use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
 pub use compare::CompareArgs;
 use cutis_render::film::ToneMapper;
+use cutis_render::settings::Quality;
 use cutis_render::{Aov, AovSpace, Diffusion, Settings, TechniqueName};
 pub use diff::DiffArgs;
 pub use profile::{METHODS, ProfileArgs};
@@ -83,12 +84,16 @@ pub struct RenderArgs {
     /// adapter, also a program that stands in for one
     #[arg(long, value_name = "NAME", default_value_t = Backend::Auto.to_string(), value_parser = names(Backend::ALL))]
     pub backend: String,
-    /// Width and height of the picture [pixels, 1x1 to 16384x16384]
-    #[arg(long, value_name = "WIDTHxHEIGHT", default_value_t = default_size())]
-    pub size: String,
-    /// Samples per pixel; texture-space rounds them up to a square number [1 to 1048576]
-    #[arg(long, value_name = "N", default_value_t = Settings::default().samples_per_pixel)]
-    pub samples: u32,
+    /// Sizes and numbers of samples that no other flag names, after table 1 of d'Eon et al. 2007; full: 1250x750 pixels of 4
+    /// samples, maps of 2048² texels; low: 1024x1024 of 1, 1024², half of the rays; auto: as told below
+    #[arg(long, value_name = "NAME", default_value_t = Quality::Auto.to_string(), value_parser = names(Quality::ALL))]
+    pub quality: String,
+    /// Width and height of the picture [pixels, 1x1 to 16384x16384, default 1024x1024]
+    #[arg(long, value_name = "WIDTHxHEIGHT")]
+    pub size: Option<String>,
+    /// Samples per pixel; texture-space rounds them up to a square number [1 to 1048576, default 4]
+    #[arg(long, value_name = "N")]
+    pub samples: Option<u32>,
     /// Noise at which truth stops before all samples are taken: root mean squared standard error over mean radiance
     /// [fraction, above 0, below 1, default: none]
     #[arg(long, value_name = "FRACTION", allow_negative_numbers = true)]
@@ -113,21 +118,22 @@ pub struct RenderArgs {
     /// Print one JSON object on stdout, and nothing else
     #[arg(long)]
     pub json: bool,
-    /// Width and height of the largest object's irradiance texture, rounded up to a multiple of 8 [texels, 16 to 16384]
-    #[arg(long, value_name = "N", default_value_t = Settings::default().irradiance_size)]
-    pub irradiance_size: u32,
+    /// Width and height of the largest object's irradiance texture, rounded up to a multiple of 8 [texels, 16 to 16384,
+    /// default 2048]
+    #[arg(long, value_name = "N")]
+    pub irradiance_size: Option<u32>,
     /// Gaussians in the kernel of a material given by its coefficients [1 to 16]
     #[arg(long, value_name = "N", default_value_t = Settings::default().gaussians)]
     pub gaussians: usize,
-    /// Shadow rays per texel towards lights with an extent [1 to 1024]
-    #[arg(long, value_name = "N", default_value_t = Settings::default().shadow_samples)]
-    pub shadow_samples: u32,
+    /// Shadow rays per texel towards lights with an extent [1 to 1024, default 4]
+    #[arg(long, value_name = "N")]
+    pub shadow_samples: Option<u32>,
     /// Measure what the diffusion did: change of energy, mismatch across UV seams
     #[arg(long)]
     pub diffusion_report: bool,
-    /// Ambient-occlusion rays per texel of the occlusion map [1 to 4096]
-    #[arg(long, value_name = "N", default_value_t = Settings::default().ambient_samples)]
-    pub ambient_samples: u32,
+    /// Ambient-occlusion rays per texel of the occlusion map [1 to 4096, default 6]
+    #[arg(long, value_name = "N")]
+    pub ambient_samples: Option<u32>,
     /// Light of the picture, on top of the scene camera's own exposure; not for EXR [EV (stops), -32 to 32, default 0]
     #[arg(long, value_name = "EV", allow_negative_numbers = true)]
     pub exposure_ev: Option<f32>,
@@ -274,6 +280,24 @@ mod tests {
         assert!(help.contains(&format!("4000000, default {}", head.triangles)), "{help}");
         assert!(help.contains(&format!("8192, default {}", head.map_size)), "{help}");
         assert!(help.contains(&format!("-32 to 32, default {}", film.exposure_ev)), "{help}");
+        let settings = Settings::default();
+        assert!(help.contains(&format!("16384x16384, default {}", default_size())), "{help}");
+        assert!(help.contains(&format!("1048576, default {}]", settings.samples_per_pixel)), "{help}");
+        assert!(help.contains(&format!("16 to 16384, default {}]", settings.irradiance_size)), "{help}");
+        assert!(help.contains(&format!("1 to 1024, default {}]", settings.shadow_samples)), "{help}");
+        assert!(help.contains(&format!("1 to 4096, default {}]", settings.ambient_samples)), "{help}");
+        let full = settings.clone().with_quality(Quality::Full);
+        let words = format!(
+            "full: {}x{} pixels of {} samples, maps of {}²",
+            full.width, full.height, full.samples_per_pixel, full.irradiance_size
+        );
+        assert!(help.contains(&words), "{help}");
+        let low = settings.with_quality(Quality::Low);
+        let words = format!(
+            "low: {}x{} of {}, {}²",
+            low.width, low.height, low.samples_per_pixel, low.irradiance_size
+        );
+        assert!(help.contains(&words), "{help}");
     }
 
     #[test]

@@ -4,6 +4,7 @@ use crate::backend::Backend;
 use crate::cli::{AOV_SPACES, DIFFUSIONS, RenderArgs};
 use crate::scene_source::SceneSource;
 use cutis_render::film::{Bloom, Checkpoint, Film, Format, check_output, layer_path};
+use cutis_render::settings::Quality;
 use cutis_render::{Aov, Settings};
 use cutis_scene::ReadOptions;
 use cutis_scene::head::HeadDetail;
@@ -50,7 +51,9 @@ impl Job {
 }
 
 fn settings(args: &RenderArgs) -> Result<Settings> {
-    let (width, height) = size(&args.size)?;
+    let quality = named("--quality", &args.quality, Quality::ALL.map(|q| (q.to_string(), q)))?;
+    let preset = Settings::default().with_quality(quality);
+    let (width, height) = args.size.as_deref().map_or(Ok((preset.width, preset.height)), size)?;
     let mut aovs: Vec<Aov> = Vec::new();
     for name in &args.aov {
         let aov = name.parse().map_err(|reason| miette!("--aov: {reason}"))?;
@@ -63,13 +66,13 @@ fn settings(args: &RenderArgs) -> Result<Settings> {
         diffusion: named("--diffusion", &args.diffusion, DIFFUSIONS.map(|d| (d.to_string(), d)))?,
         width,
         height,
-        samples_per_pixel: args.samples,
-        irradiance_size: args.irradiance_size,
+        samples_per_pixel: args.samples.unwrap_or(preset.samples_per_pixel),
+        irradiance_size: args.irradiance_size.unwrap_or(preset.irradiance_size),
         gaussians: args.gaussians,
         muted_gaussians: Vec::new(),
-        shadow_samples: args.shadow_samples,
+        shadow_samples: args.shadow_samples.unwrap_or(preset.shadow_samples),
         diffusion_report: args.diffusion_report,
-        ambient_samples: args.ambient_samples,
+        ambient_samples: args.ambient_samples.unwrap_or(preset.ambient_samples),
         seed: args.seed,
         target_error: args.target_error,
         close_holes: args.close_holes,
@@ -204,6 +207,22 @@ pub fn refused(error: impl Display) -> miette::Report {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn settings_of(words: &[&str]) -> Settings {
+        use clap::Parser;
+        let cli = crate::cli::Cli::try_parse_from(["cutis", "render"].iter().chain(words)).expect("is sound");
+        let crate::cli::Command::Render(args) = cli.command else { panic!("is a rendering") };
+        settings(&args).expect("is in range")
+    }
+
+    #[test]
+    fn flags_win_over_the_quality() {
+        assert_eq!(settings_of(&[]), Settings::default());
+        let low = Settings::default().with_quality(Quality::Low);
+        assert_eq!(settings_of(&["--quality", "low"]), low);
+        let own = settings_of(&["--quality", "low", "--samples", "9", "--size", "64x32"]);
+        assert_eq!(own, Settings { samples_per_pixel: 9, width: 64, height: 32, ..low });
+    }
 
     #[test]
     fn sizes_are_read() {

@@ -19,9 +19,7 @@ pub fn run(args: &RenderArgs, verbose: u8) -> Result<Outcome> {
     let job = Job::new(args)?;
     choose_threads(job.threads)?;
     let (scene, reading) = timed("read", || job.source.load().map_err(|error| miette!("{error}")))?;
-    let renderer = job.backend.renderer(job.settings.technique, &scene)?;
-    tracing::info!("backend {}, {}", renderer.backend(), renderer.adapter());
-    let frame = draw(renderer.as_ref(), &scene, &job, verbose)?;
+    let (renderer, frame) = draw(&scene, &job, verbose)?;
     let film = Film { exposure_ev: job.film.exposure_ev + scene.camera.exposure_ev, ..job.film };
     let (written, writing) = timed("write", || {
         film::write(&job.output, job.format, &frame, &film).map_err(|error| miette!("{error}"))
@@ -63,11 +61,22 @@ fn say_report(report: &DiffusionReport) -> Result<()> {
     ))
 }
 
-fn draw(renderer: &dyn Renderer, scene: &Scene, job: &Job, verbose: u8) -> Result<Frame> {
-    let bar = Bar::new(verbose);
-    let frame = renderer.render(scene, &job.settings, &bar);
-    bar.finish();
-    frame.map_err(|error| miette!("{error}"))
+/// The picture, and who has drawn it in the end.
+fn draw(scene: &Scene, job: &Job, verbose: u8) -> Result<(Box<dyn Renderer>, Frame)> {
+    let mut renderer = job.backend.renderer(job.settings.technique, scene)?;
+    loop {
+        tracing::info!("backend {}, {}", renderer.backend(), renderer.adapter());
+        let bar = Bar::new(verbose);
+        let frame = renderer.render(scene, &job.settings, &bar);
+        bar.finish();
+        match frame {
+            Ok(frame) => return Ok((renderer, frame)),
+            Err(error) => {
+                let instead = job.backend.instead(renderer.as_ref(), &error);
+                renderer = instead.ok_or_else(|| miette!("{error}"))?;
+            }
+        }
+    }
 }
 
 fn timed<T>(name: &str, work: impl FnOnce() -> Result<T>) -> Result<(T, PassTime)> {

@@ -13,7 +13,8 @@ struct Camera {
 }
 
 struct Seen {
-    @builtin(position) position: vec4f,
+    /// The same in the pass that finds what is nearest and in the one that shades it.
+    @builtin(position) @invariant position: vec4f,
     @location(0) position_mm: vec3f,
     @location(1) normal: vec3f,
     @location(2) tangent: vec4f,

@@ -1,24 +1,37 @@
-// Reads of a level of the diffusion. A chart too thin for a coarse level is read from a finer one that has it.
+// Reads of the levels of the diffusion. Levels of one size are layers of one texture: where to read is found once for all of
+// them. A chart too thin for a coarse level is read from the size before it.
 
-/// Layer `layer` at a place in a chart: from the level itself; else the nearest texel of a finer one, else of the finest.
-fn sample_level(
-    level: texture_2d_array<f32>,
-    charts: texture_2d<u32>,
+/// Most Gaussians of a kernel.
+const MAX_GAUSSIANS: u32 = 16u;
+
+/// A place on all levels of a size.
+struct OnLevels {
+    texels: Around,
+    /// All 0 where no texel belongs to the chart.
+    weights: vec4f,
+    covered: bool,
+}
+
+fn on_levels(charts: texture_2d<u32>, uv: vec2f, chart: u32) -> OnLevels {
+    let texels = around(uv, textureDimensions(charts));
+    let weights = chart_weights(charts, texels, chart);
+    return OnLevels(texels, weights, any(weights > vec4f(0.0)));
+}
+
+/// What is read where a chart is too thin: the nearest texel of a level one size up, else of the unblurred light.
+fn instead_of_level(
     finer: texture_2d_array<f32>,
     finer_charts: texture_2d<u32>,
+    finer_layer: u32,
     finest: texture_2d_array<f32>,
-    layer: u32,
     uv: vec2f,
     chart: u32,
 ) -> vec4f {
-    let texels = around(uv, textureDimensions(level));
-    let weights = chart_weights(charts, texels, chart);
-    let value = blend_layer(level, layer, texels, weights);
     let finer_texel = vec2i(uv * vec2f(textureDimensions(finer)));
-    let has_finer = textureLoad(finer_charts, finer_texel, 0).x == chart;
     let finest_texel = vec2i(uv * vec2f(textureDimensions(finest)));
-    let instead = select(
-        textureLoad(finest, finest_texel, layer, 0), textureLoad(finer, finer_texel, layer, 0), has_finer,
+    return select(
+        textureLoad(finest, finest_texel, 0, 0),
+        textureLoad(finer, finer_texel, finer_layer, 0),
+        textureLoad(finer_charts, finer_texel, 0).x == chart,
     );
-    return select(instead, value, any(weights > vec4f(0.0)));
 }

@@ -7,6 +7,11 @@ const TILE_TEXELS: u32 = 16u;
 
 @vertex
 fn cover_run(@builtin(vertex_index) corner: u32, @builtin(instance_index) run: u32) -> @builtin(position) vec4f {
+    return corner_of_run(corner, run);
+}
+
+/// A corner of the two triangles that cover a run.
+fn corner_of_run(corner: u32, run: u32) -> vec4f {
     let code = tiles[run + 1u];
     let left = code & 1023u;
     let right = (code >> 10u) & 1023u;

@@ -18,38 +18,89 @@ struct Along {
 /// Deviations that are taken in; also in `taps.wgsl`.
 const DEVIATIONS: f32 = 3.3;
 
-fn load(texel: vec2i) -> vec4f {
-    return textureLoad(light, texel, 0);
+/// What has been read so far. Either side has half of the light, and half of the centre is its own.
+struct Sides {
+    texel: vec2i,
+    ahead: vec4f,
+    behind: vec4f,
+    whole: vec2f,
+    /// Of the next distance: exp(-d²/2v) for d = 1, 2, 3 … by two products each.
+    weight: vec2f,
+    growth: vec2f,
+    growth_of_growth: vec2f,
+    /// Distance in texels beyond which weights are next to nothing.
+    farthest: i32,
+}
+
+fn sides(texel: vec2i) -> Sides {
+    let variance = textureLoad(variances, texel, 0).xy;
+    let q = exp(-0.5 / max(variance, vec2f(0.02)));
+    let centre = 0.5 * textureLoad(light, texel, 0);
+    let farthest = i32(DEVIATIONS * sqrt(max(variance.x, variance.y)) + 0.5);
+    return Sides(texel, centre, centre, vec2f(0.5), q, q * q * q, q * q, farthest);
+}
+
+/// With what lies `d` and `d + 1` texels away.
+fn two_more(before: Sides, d: i32) -> Sides {
+    let near = d * along.step_texels;
+    let far = near + along.step_texels;
+    let second = before.weight * before.growth;
+    let growth = before.growth * before.growth_of_growth;
+    var sides = before;
+    sides.ahead += textureLoad(light, before.texel + near, 0) * before.weight.x
+        + textureLoad(light, before.texel + far, 0) * second.x;
+    sides.behind += textureLoad(light, before.texel - near, 0) * before.weight.y
+        + textureLoad(light, before.texel - far, 0) * second.y;
+    sides.whole += before.weight + second;
+    sides.weight = second * growth;
+    sides.growth = growth * before.growth_of_growth;
+    return sides;
+}
+
+fn together(sides: Sides) -> vec4f {
+    return sides.ahead * (0.5 / sides.whole.x) + sides.behind * (0.5 / sides.whole.y);
+}
+
+// Three forms of one loop, which differ only in how much is read between two looks whether it is enough.
+
+@fragment
+fn blur_by_twos(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    var read = sides(vec2i(position.xy));
+    var d = 1;
+    loop {
+        read = two_more(read, d);
+        continuing {
+            d += 2;
+            break if d > read.farthest;
+        }
+    }
+    return together(read);
 }
 
 @fragment
-fn blur(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let texel = vec2i(position.xy);
-    let variance = textureLoad(variances, texel, 0).xy;
-    let farthest = i32(DEVIATIONS * sqrt(max(variance.x, variance.y)) + 0.5);
-    // exp(-d²/2v) for d = 1, 2, 3 … by two products each.
-    let q = exp(-0.5 / max(variance, vec2f(0.02)));
-    var weight = q;
-    var growth = q * q * q;
-    // Either side has half of the light, and half of the centre is its own.
-    let centre = 0.5 * load(texel);
-    var near = centre;
-    var far = centre;
-    var whole = vec2f(0.5);
-    // Two at a time: what lies beyond the farthest weighs next to nothing.
-    let along_line = along.step_texels;
-    for (var d = 1; d <= farthest; d += 2) {
-        let ahead = texel + d * along_line;
-        let behind = texel - d * along_line;
-        near += load(ahead) * weight.x;
-        far += load(behind) * weight.y;
-        let second = weight * growth;
-        growth *= q * q;
-        near += load(ahead + along_line) * second.x;
-        far += load(behind - along_line) * second.y;
-        whole += weight + second;
-        weight = second * growth;
-        growth *= q * q;
+fn blur_by_fours(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    var read = sides(vec2i(position.xy));
+    var d = 1;
+    loop {
+        read = two_more(two_more(read, d), d + 2);
+        continuing {
+            d += 4;
+            break if d > read.farthest;
+        }
     }
-    return near * (0.5 / whole.x) + far * (0.5 / whole.y);
+    return together(read);
+}
+
+@fragment
+fn blur_by_eights(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    var read = sides(vec2i(position.xy));
+    var d = 1;
+    loop {
+        read = two_more(two_more(two_more(two_more(read, d), d + 2), d + 4), d + 6);
+        continuing {
+            d += 8;
+            break if d > read.farthest;
+        }
+    }
+    return together(read);
 }

@@ -2,7 +2,8 @@
 //! each Gaussian from the one before, wide ones in smaller textures.
 
 use crate::Gpu;
-use crate::map::Map;
+use crate::map::{Map, View};
+use crate::passes::levels::Levels;
 use crate::passes::over_charts;
 use crate::pipeline::{Blueprint, Bound, Pipeline};
 use crate::scene::charts::ChartTexture;
@@ -16,6 +17,13 @@ use wgpu::TextureFormat as Format;
 
 /// Format of stretch and of variances: two numbers a texel.
 const PAIR: Format = Format::Rg16Float;
+
+/// Variance in texel² up to which light stays in its texel: half as much of it, 2 %, would reach each neighbour.
+const STAYS_TEXEL2: f32 = 0.04;
+/// Distances to either side that a blur takes in at once, and that few texels go beyond: going round again costs most.
+const AT_ONCE: [f32; 3] = [2.0, 4.0, 8.0];
+/// Deviations that are taken in; also in the shaders.
+const DEVIATIONS: f32 = 3.3;
 
 /// How one step widens along one axis; the twin of `Widening` in `taps.wgsl`.
 #[repr(C)]
@@ -67,35 +75,12 @@ pub struct Halved {
     pub pad1: u32,
 }
 
-/// The light before any blur and after every Gaussian.
-#[derive(Debug)]
-pub struct Levels {
-    /// Level 0 is unblurred; level i is blurred by the i-th variance.
-    pub all: Vec<Level>,
-}
-
-/// One blurred state of all layers.
-#[derive(Debug, Clone)]
-pub struct Level {
-    /// Charts at this level's size.
-    pub charts: ChartTexture,
-    /// Irradiance with distance in alpha; with several lights, their distances in further layers.
-    pub light: Map,
-}
-
-impl Levels {
-    /// The nearest level before this one that is larger; the first if there is none.
-    pub fn finer_than(&self, level: usize) -> &Level {
-        let size = self.all[level].charts.size;
-        self.all[..level].iter().rev().find(|l| l.charts.size > size).unwrap_or(&self.all[0])
-    }
-}
-
 /// The pass's pipelines and tables.
 #[derive(Debug)]
 pub struct DiffusionPass {
     taps: Pipeline,
-    blur: Pipeline,
+    /// By how many distances they take in at once: see [`AT_ONCE`].
+    blurs: [Pipeline; 3],
     halve_light: Pipeline,
     halve_stretch: Pipeline,
     narrow: wgpu::Buffer,
@@ -108,8 +93,6 @@ pub struct Diffusion {
     pub taps: Vec<Step>,
     /// Blurs the light.
     pub blurs: Vec<Step>,
-    /// What that fills.
-    pub levels: Levels,
 }
 
 impl DiffusionPass {
@@ -122,41 +105,56 @@ impl DiffusionPass {
         let light = &[Format::Rgba16Float];
         Self {
             taps: pipeline("taps", shaders::TAPS, "lay_taps", &[PAIR, PAIR]),
-            blur: pipeline("blur", shaders::BLUR, "blur", light),
+            blurs: ["blur_by_twos", "blur_by_fours", "blur_by_eights"]
+                .map(|entry| pipeline("blur", shaders::BLUR, entry, light)),
             halve_light: pipeline("blur", shaders::HALVE, "halve", light),
             halve_stretch: pipeline("taps", shaders::HALVE, "halve", &[PAIR]),
             narrow: gpu.storage("discrete variances", &TAPS.narrow),
         }
     }
 
-    /// The steps of a plan. `charts` are those of the first level and of every halved one.
+    /// The steps that fill all levels but the first, from that one. `charts` are those of the first size and of every halved
+    /// one; `actions` those that the levels were made for.
     pub fn steps(
         &self,
         gpu: &Gpu,
         charts: &[ChartTexture],
-        light: &Map,
+        levels: &Levels,
         stretch: &Map,
-        plan: &[Action],
+        actions: &[Action],
+        texel_mm: f32,
     ) -> Diffusion {
-        let mut way = Way::new(self, gpu, charts, light, stretch);
-        for action in without_steps_between(plan) {
+        let mut way = Way::new(self, gpu, charts, levels, stretch, texel_mm);
+        for &action in actions {
             match action {
                 Action::Halve => way.halve(),
                 Action::Step(widening) => way.step(widening),
-                Action::Keep => way.levels.push(way.level()),
+                Action::Keep => way.level += 1,
             }
         }
-        Diffusion { taps: way.taps, blurs: way.blurs, levels: Levels { all: way.levels } }
+        Diffusion { taps: way.taps, blurs: way.blurs }
     }
 }
 
+/// What of a plan is done here, where most texels are `texel_mm` wide.
+///
 /// Steps in between keep taps from being too far apart. A Gaussian sampled at every texel needs none: one step does what
-/// several in a row would do.
-fn without_steps_between(plan: &[Action]) -> Vec<Action> {
+/// several in a row would do. And what would hardly leave its texel stays there, until a wider Gaussian takes it along.
+pub fn shortened(plan: &[Action], texel_mm: f32) -> Vec<Action> {
     let mut actions: Vec<Action> = Vec::new();
+    let mut saved: Option<blur::Widening> = None;
     for &action in plan {
         match (actions.last_mut(), action) {
             (Some(Action::Step(before)), Action::Step(next)) => before.to_mm2 = next.to_mm2,
+            (_, Action::Step(next)) => {
+                let from = saved.take().unwrap_or(next);
+                let whole = blur::Widening { to_mm2: next.to_mm2, ..from };
+                if whole.to_mm2 < STAYS_TEXEL2 * texel_mm * texel_mm {
+                    saved = Some(whole);
+                } else {
+                    actions.push(Action::Step(whole));
+                }
+            }
             _ => actions.push(action),
         }
     }
@@ -168,14 +166,18 @@ struct Way<'a> {
     pass: &'a DiffusionPass,
     gpu: &'a Gpu,
     charts: &'a [ChartTexture],
+    levels: &'a Levels,
     halvings: usize,
+    /// Number of the level that was kept last.
+    level: usize,
+    /// Width of most texels, mm.
+    texel_mm: f32,
     light: Map,
     stretch: Map,
     /// Light blurred along u only.
     half_way: Map,
     taps: Vec<Step>,
     blurs: Vec<Step>,
-    levels: Vec<Level>,
 }
 
 impl<'a> Way<'a> {
@@ -183,13 +185,17 @@ impl<'a> Way<'a> {
         pass: &'a DiffusionPass,
         gpu: &'a Gpu,
         charts: &'a [ChartTexture],
-        light: &Map,
+        levels: &'a Levels,
         stretch: &Map,
+        texel_mm: f32,
     ) -> Self {
+        let light = levels.all[0].light.clone();
         Self {
-            half_way: same_layers(gpu, "blurred light", charts[0].size, light),
-            levels: vec![Level { charts: charts[0].clone(), light: light.clone() }],
-            light: light.clone(),
+            half_way: same_layers(gpu, "blurred light", charts[0].size, &light),
+            light,
+            levels,
+            level: 0,
+            texel_mm,
             stretch: stretch.clone(),
             taps: Vec::new(),
             blurs: Vec::new(),
@@ -204,13 +210,10 @@ impl<'a> Way<'a> {
         &self.charts[self.halvings]
     }
 
-    fn level(&self) -> Level {
-        Level { charts: self.charts().clone(), light: self.light.clone() }
-    }
-
     fn halve(&mut self) {
         let fine = self.charts();
         self.halvings += 1;
+        self.texel_mm *= 2.0;
         let size = self.charts().size;
         self.half_way = same_layers(self.gpu, "blurred light", size, &self.light);
         let light = same_layers(self.gpu, "halved light", size, &self.light);
@@ -230,7 +233,7 @@ impl<'a> Way<'a> {
         fine: &ChartTexture,
         halved: Halved,
         source: &Map,
-        target: &wgpu::TextureView,
+        target: &View,
     ) -> Step {
         let numbers = self.gpu.uniform("halved", &halved);
         let bound = [
@@ -242,16 +245,24 @@ impl<'a> Way<'a> {
         over_charts(self.gpu, pipeline, self.charts(), &bound, &[target], false)
     }
 
-    /// Blurs along u, then along v into a map of its own, for it is kept.
+    /// Blurs along u, then along v into the next level.
     fn step(&mut self, widening: blur::Widening) {
         self.blur(widening, 0, self.half_way.clone());
-        let level = same_layers(self.gpu, "level", self.charts().size, &self.light);
-        self.blur(widening, 1, level);
+        self.blur(widening, 1, self.levels.all[self.level + 1].light.clone());
+    }
+
+    /// The pipeline that takes in most texels at once.
+    fn pipeline(&self, widening: blur::Widening) -> &'a Pipeline {
+        let variance_mm2 = widening.to_mm2 - widening.from_mm2;
+        let farthest = DEVIATIONS * variance_mm2.max(0.0).sqrt() / self.texel_mm + 0.5;
+        let fits = AT_ONCE.iter().position(|&taps| farthest < taps + 1.0).unwrap_or(AT_ONCE.len() - 1);
+        &self.pass.blurs[fits]
     }
 
     fn blur(&mut self, widening: blur::Widening, axis: u32, target: Map) {
         let variances = self.lay_taps(widening, axis);
         let step_texels = if axis == 0 { [1, 0] } else { [0, 1] };
+        let pipeline = self.pipeline(widening);
         let numbers = self.gpu.uniform("along", &Along { step_texels, ..Along::zeroed() });
         for (source, target) in self.light.layers.iter().zip(&target.layers) {
             let bound = [
@@ -259,7 +270,7 @@ impl<'a> Way<'a> {
                 (2, Bound::Texture(source)),
                 (3, Bound::Texture(variances.view())),
             ];
-            self.blurs.push(over_charts(self.gpu, &self.pass.blur, self.charts(), &bound, &[target], false));
+            self.blurs.push(over_charts(self.gpu, pipeline, self.charts(), &bound, &[target], false));
         }
         self.light = target;
     }

@@ -46,8 +46,7 @@ impl DownsamplePass {
         let numbers = gpu.uniform("pixels", &Pixels { grid: grid as i32, ..Pixels::zeroed() });
         let bound = [(0, Bound::Texture(samples.view())), (1, Bound::Buffer(&numbers))];
         Step::Draw(Draw {
-            pass: pipeline.name,
-            pipeline: pipeline.raw.clone(),
+            pipeline: pipeline.clone(),
             bind_groups: vec![pipeline.bind(gpu, 0, &bound)],
             targets: vec![pixels.view().clone()],
             depth: None,

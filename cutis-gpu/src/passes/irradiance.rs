@@ -1,7 +1,7 @@
 //! Irradiance under the surface, in texture space. The twin of cutis-render's `irradiance`.
 
 use crate::Gpu;
-use crate::map::Map;
+use crate::map::{Map, View};
 use crate::passes::atlas::AtlasMaps;
 use crate::passes::{Samplers, over_charts};
 use crate::pipeline::{Blueprint, Bound, Pipeline};
@@ -58,7 +58,7 @@ impl IrradiancePass {
     }
 
     /// Fills the texture.
-    pub fn step(&self, gpu: &Gpu, inputs: &IrradianceInputs, target: &wgpu::TextureView) -> Step {
+    pub fn step(&self, gpu: &Gpu, inputs: &IrradianceInputs, target: &View) -> Step {
         let IrradianceInputs { samplers, material, environment, atlas, .. } = inputs;
         let bound = [
             (1, Bound::Buffer(inputs.lights)),

@@ -35,13 +35,18 @@ fn light_texel(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let rho_s = scalar_at(material.rho_s, textureSampleLevel(rho_s_map, repeating, uv, 0.0));
     let roughness = scalar_at(material.roughness, textureSampleLevel(roughness_map, repeating, uv, 0.0));
     var light_in = vec3f(0.0);
-    for (var l = 0u; l < arrayLength(&lights); l++) {
+    var l = 0u;
+    loop {
         let towards = sample_light(l, point_mm);
         let visible = textureLoad(visibility, texel, l / 4u, 0)[l % 4u];
         // Relief may turn a normal away from a light that the smooth surface faces.
         let cos = max(dot(normal, towards.dir_to_light), 0.0);
         let entered = cos * visible * rho_dt(rho_dt_table, linear, cos, roughness, rho_s);
         light_in += towards.irradiance_w_per_m2 * entered;
+        continuing {
+            l++;
+            break if l >= arrayLength(&lights);
+        }
     }
     let smooth_normal = unpack_unit(place.w);
     light_in += from_environment(uv, chart, smooth_normal, normal)

@@ -6,6 +6,7 @@ pub mod diffusion;
 pub mod downsample;
 pub mod gather;
 pub mod irradiance;
+pub mod levels;
 pub mod resolve;
 pub mod shadow;
 pub mod shares;
@@ -14,6 +15,7 @@ pub mod transmission;
 pub mod visibility;
 
 use crate::Gpu;
+use crate::map::View;
 use crate::pipeline::{Bound, Pipeline};
 use crate::scene::charts::ChartTexture;
 use crate::step::{Draw, Step};
@@ -111,20 +113,31 @@ fn over_charts(
     pipeline: &Pipeline,
     charts: &ChartTexture,
     bound: &[(u32, Bound)],
-    targets: &[&wgpu::TextureView],
+    targets: &[&View],
     clear: bool,
 ) -> Step {
-    let mut all = vec![(0, Bound::Buffer(&charts.tiles))];
+    over_tiles(gpu, pipeline, (&charts.tiles, charts.runs), bound, targets, clear)
+}
+
+/// The same over a list of so many runs of tiles.
+fn over_tiles(
+    gpu: &Gpu,
+    pipeline: &Pipeline,
+    (tiles, runs): (&wgpu::Buffer, u32),
+    bound: &[(u32, Bound)],
+    targets: &[&View],
+    clear: bool,
+) -> Step {
+    let mut all = vec![(0, Bound::Buffer(tiles))];
     all.extend_from_slice(bound);
     Step::Draw(Draw {
-        pass: pipeline.name,
-        pipeline: pipeline.raw.clone(),
+        pipeline: pipeline.clone(),
         bind_groups: vec![pipeline.bind(gpu, 0, &all)],
         targets: targets.iter().map(|&view| view.clone()).collect(),
         depth: None,
         clear: clear.then_some(wgpu::Color::TRANSPARENT),
         // Two triangles for every run of tiles.
         vertices: 6,
-        instances: charts.runs,
+        instances: runs,
     })
 }

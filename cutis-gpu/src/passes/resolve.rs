@@ -4,8 +4,8 @@
 use crate::Gpu;
 use crate::map::Map;
 use crate::passes::Samplers;
-use crate::passes::diffusion::Level;
-use crate::pipeline::{Blueprint, Bound, Pipeline};
+use crate::passes::levels::Level;
+use crate::pipeline::{Binding, Blueprint, Bound, Pipeline};
 use crate::scene::charts::ChartTexture;
 use crate::scene::environment::EnvironmentMaps;
 use crate::scene::geometry::Geometry;
@@ -107,6 +107,7 @@ pub struct Canvas<'a> {
 /// The pass's pipelines.
 #[derive(Debug)]
 pub struct ResolvePass {
+    nearest: Pipeline,
     shade: Pipeline,
     show: Pipeline,
     sky: Pipeline,
@@ -115,21 +116,47 @@ pub struct ResolvePass {
 impl ResolvePass {
     /// Compiles them.
     pub fn new(gpu: &Gpu) -> Self {
-        let pipeline = |source, entries, format, depth| {
-            let (name, targets) = ("resolve", &[format]);
+        let pipeline = |source, entries, targets: &[Format], depth| {
+            let name = "resolve";
             Pipeline::new(gpu, &Blueprint { name, source, entries, targets, additive: false, depth })
         };
         Self {
-            shade: pipeline(shaders::RESOLVE, ["see", "shade"], PICTURE, true),
-            show: pipeline(shaders::RESOLVE, ["see", "show"], LAYER, true),
-            sky: pipeline(shaders::SKY, ["cover_picture", "see_sky"], PICTURE, false),
+            nearest: pipeline(shaders::RESOLVE, ["see", "shade"], &[], true),
+            shade: pipeline(shaders::RESOLVE, ["see", "shade"], &[PICTURE], true),
+            show: pipeline(shaders::RESOLVE, ["see", "show"], &[LAYER], true),
+            sky: pipeline(shaders::SKY, ["cover_picture", "see_sky"], &[PICTURE], false),
         }
     }
 
-    /// Draws an object.
+    /// Finds out where an object is nearest, so that nothing is shaded that will be hidden.
+    pub fn nearest_step(
+        &self,
+        gpu: &Gpu,
+        camera: &wgpu::Buffer,
+        geometry: &Geometry,
+        depth: &Map,
+        first: bool,
+    ) -> Step {
+        let bound = [
+            (0, Bound::Buffer(&geometry.vertices)),
+            (1, Bound::Buffer(&geometry.triangles)),
+            (2, Bound::Buffer(camera)),
+        ];
+        Step::Draw(Draw {
+            pipeline: self.nearest.clone(),
+            bind_groups: vec![self.nearest.bind(gpu, 0, &bound)],
+            targets: Vec::new(),
+            depth: Some((depth.view().clone(), first)),
+            clear: None,
+            vertices: 3 * geometry.triangle_count,
+            instances: 1,
+        })
+    }
+
+    /// Shades an object where it is nearest.
     pub fn step(&self, gpu: &Gpu, inputs: &ResolveInputs, canvas: &Canvas) -> Step {
         let bind_groups = vec![bind(gpu, &self.shade, inputs)];
-        draw(&self.shade, bind_groups, inputs, canvas)
+        draw(&self.shade, bind_groups, inputs, canvas, false)
     }
 
     /// Draws a layer of an object; `level` is what layers of textures are read from.
@@ -148,7 +175,7 @@ impl ResolvePass {
             (2, Bound::Texture(level.charts.map.view())),
         ];
         let bind_groups = vec![bind(gpu, &self.show, inputs), self.show.bind(gpu, 1, &more)];
-        draw(&self.show, bind_groups, inputs, canvas)
+        draw(&self.show, bind_groups, inputs, canvas, canvas.first)
     }
 
     /// Draws the environment behind everything.
@@ -168,8 +195,7 @@ impl ResolvePass {
             (3, Bound::Sampler(&samplers.around_sky)),
         ];
         Step::Draw(Draw {
-            pass: self.sky.name,
-            pipeline: self.sky.raw.clone(),
+            pipeline: self.sky.clone(),
             bind_groups: vec![self.sky.bind(gpu, 0, &bound)],
             targets: vec![samples.view().clone()],
             depth: None,
@@ -180,7 +206,7 @@ impl ResolvePass {
     }
 }
 
-fn bind(gpu: &Gpu, pipeline: &Pipeline, inputs: &ResolveInputs) -> wgpu::BindGroup {
+fn bind(gpu: &Gpu, pipeline: &Pipeline, inputs: &ResolveInputs) -> Binding {
     let ResolveInputs { samplers, environment, geometry, material, charts, .. } = inputs;
     let bound = [
         (0, Bound::Buffer(&geometry.vertices)),
@@ -211,16 +237,16 @@ fn bind(gpu: &Gpu, pipeline: &Pipeline, inputs: &ResolveInputs) -> wgpu::BindGro
 
 fn draw(
     pipeline: &Pipeline,
-    bind_groups: Vec<wgpu::BindGroup>,
+    bind_groups: Vec<Binding>,
     inputs: &ResolveInputs,
     canvas: &Canvas,
+    clear_depth: bool,
 ) -> Step {
     Step::Draw(Draw {
-        pass: pipeline.name,
-        pipeline: pipeline.raw.clone(),
+        pipeline: pipeline.clone(),
         bind_groups,
         targets: vec![canvas.samples.view().clone()],
-        depth: Some((canvas.depth.view().clone(), canvas.first)),
+        depth: Some((canvas.depth.view().clone(), clear_depth)),
         clear: canvas.clear.filter(|_| canvas.first),
         vertices: 3 * inputs.geometry.triangle_count,
         instances: 1,

@@ -94,11 +94,16 @@ fn parts_at(place: Place) -> Parts {
 fn specular(place: Place, texels: Around, weights: vec4f) -> vec3f {
     let shine = Shine(place.normal, place.dir_to_eye, place.rho_s, place.roughness, material.f0);
     var sum = vec3f(0.0);
-    for (var l = 0u; l < arrayLength(&lights); l++) {
+    var l = 0u;
+    loop {
         let towards = sample_light(l, place.position_mm);
         if dot(place.smooth_normal, towards.dir_to_light) >= 0.0 {
             let visible = blend_layer(visibility, l / 4u, texels, weights)[l % 4u];
             sum += from_light(shine, towards) * visible;
+        }
+        continuing {
+            l++;
+            break if l >= arrayLength(&lights);
         }
     }
     return sum + from_surroundings(place, shine);

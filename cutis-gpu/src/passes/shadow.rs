@@ -87,8 +87,7 @@ impl ShadowPass {
         ];
         let first = drawn.object == 0;
         Step::Draw(Draw {
-            pass: self.pipeline.name,
-            pipeline: self.pipeline.raw.clone(),
+            pipeline: self.pipeline.clone(),
             bind_groups: vec![self.pipeline.bind(gpu, 0, &bound)],
             targets: vec![
                 maps.depths.layers[layer as usize].clone(),

@@ -1,6 +1,7 @@
 //! Each light's share of the irradiance, where there are several: light that comes through is counted once for every light.
 
 use crate::Gpu;
+use crate::map::View;
 use crate::passes::irradiance::IrradianceInputs;
 use crate::passes::over_charts;
 use crate::pipeline::{Blueprint, Bound, Pipeline};
@@ -44,13 +45,7 @@ impl SharesPass {
     }
 
     /// Fills the shares of four lights.
-    pub fn step(
-        &self,
-        gpu: &Gpu,
-        group: ShareGroup,
-        inputs: &IrradianceInputs,
-        target: &wgpu::TextureView,
-    ) -> Step {
+    pub fn step(&self, gpu: &Gpu, group: ShareGroup, inputs: &IrradianceInputs, target: &View) -> Step {
         let numbers = gpu.uniform("group of lights", &group);
         let bound = [
             (1, Bound::Buffer(inputs.lights)),

@@ -6,9 +6,15 @@
 
 struct Smoothing {
     step: i32,
+    /// How far light has got by this round and those before, texels.
+    reach: i32,
     pad0: u32,
     pad1: u32,
-    pad2: u32,
+}
+
+@vertex
+fn cover_thin_tile(@builtin(vertex_index) corner: u32, @builtin(instance_index) tile: u32) -> @builtin(position) vec4f {
+    return corner_of_thin_tile(corner, tile, smoothing.reach);
 }
 
 @fragment
@@ -22,12 +28,17 @@ fn smooth_map(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let size = vec2i(textureDimensions(charts));
     var sum = vec4f(0.0);
     var whole = 0.0;
-    for (var i = 0; i < 25; i++) {
+    var i = 0;
+    loop {
         let read = texel + smoothing.step * (vec2i(i % 5, i / 5) - 2);
         if all(read >= vec2i(0)) && all(read < size) && textureLoad(charts, read, 0).x == chart {
             let weight = weights[i % 5] * weights[i / 5];
             sum += textureLoad(map, read, 0) * weight;
             whole += weight;
+        }
+        continuing {
+            i++;
+            break if i >= 25;
         }
     }
     return sum / whole;

@@ -30,8 +30,7 @@ impl StretchPass {
             (3, Bound::Buffer(&geometry.squared_stretch_mm2)),
         ];
         Step::Compute(Dispatch {
-            pass: self.pipeline.name,
-            pipeline: self.pipeline.raw.clone(),
+            pipeline: self.pipeline.clone(),
             bind_group: self.pipeline.bind(gpu, &bound),
             groups: geometry.vertex_count.div_ceil(GROUP),
         })

@@ -1,7 +1,9 @@
-// One Gaussian's part of the light that comes through the body, added to that of the others
-// (d'Eon, Luebke & Enderton 2007, sections 5.2 and 5.4; equation 16 with exp(-d²/2v)), at half the size of the irradiance.
+// Light that comes through the body (d'Eon, Luebke & Enderton 2007, sections 5.2 and 5.4; equation 16 with exp(-d²/2v)), at
+// half the size of the irradiance. Each draw adds the Gaussians whose levels have one size.
+//
+// Most of a body is opaque or lit: the thin places are marked first, and only tiles that hold some are drawn.
 
-@group(0) @binding(1) var<uniform> slab: Slab;
+@group(0) @binding(1) var<uniform> slabs: Slabs;
 @group(0) @binding(2) var<storage, read> lights: array<Light>;
 @group(0) @binding(3) var charts: texture_2d<u32>;
 @group(0) @binding(4) var atlas_charts: texture_2d<u32>;
@@ -10,52 +12,156 @@
 @group(0) @binding(7) var depths: texture_2d_array<f32>;
 @group(0) @binding(8) var surfaces: texture_2d_array<u32>;
 @group(0) @binding(9) var shares: texture_2d_array<f32>;
-/// The level before the Gaussian, for the distance; the Gaussian's own, for the light.
-@group(0) @binding(10) var before: texture_2d_array<f32>;
-@group(0) @binding(11) var before_charts: texture_2d<u32>;
-@group(0) @binding(12) var level: texture_2d_array<f32>;
-@group(0) @binding(13) var level_charts: texture_2d<u32>;
+@group(0) @binding(10) var levels: texture_2d_array<f32>;
+@group(0) @binding(11) var level_charts: texture_2d<u32>;
+@group(0) @binding(12) var finer: texture_2d_array<f32>;
+@group(0) @binding(13) var finer_charts: texture_2d<u32>;
 @group(0) @binding(14) var finest: texture_2d_array<f32>;
-/// What the light is read from in charts that are too thin for its level.
-@group(0) @binding(15) var finer: texture_2d_array<f32>;
-@group(0) @binding(16) var finer_charts: texture_2d<u32>;
 
 struct Slab {
     weight: vec3f,
     variance_mm2: f32,
+    /// Layer of its level, for the light.
+    layer: u32,
+    /// Layer of the level before, for the distance.
+    before: u32,
+    /// 1 if that one is one size up.
+    before_is_finer: u32,
+    pad0: u32,
+}
+
+struct Slabs {
+    all: array<Slab, MAX_GAUSSIANS>,
+    count: u32,
+    /// Layer of the last level one size up.
+    finer_layer: u32,
     object: u32,
     /// 1 if every light has a share of its own.
     many_lights: u32,
-    pad0: u32,
-    pad1: u32,
 }
 
 const FADE_DEVIATIONS: f32 = 6.0;
 const VISIBLE: f32 = 1e-6;
+/// Light that is worth a closer look. Less than is visible, because it is told by the nearest texels.
+const MARKED: f32 = 1e-8;
+
+/// Where a texel of the map lies on the unrolled surface.
+struct Under {
+    chart: u32,
+    texel: vec2i,
+    uv: vec2f,
+    own: OnLevels,
+    finer: OnLevels,
+}
+
+fn under(texel: vec2i) -> Under {
+    let chart = textureLoad(charts, texel, 0).x;
+    let fine = point_under(chart, 2 * texel);
+    let uv = (vec2f(fine) + 0.5) / vec2f(textureDimensions(places));
+    return Under(chart, fine, uv, on_levels(level_charts, uv, chart), on_levels(finer_charts, uv, chart));
+}
+
+@vertex
+fn cover_thin_tile(@builtin(vertex_index) corner: u32, @builtin(instance_index) tile: u32) -> @builtin(position) vec4f {
+    return corner_of_thin_tile(corner, tile, 0);
+}
+
+@vertex
+fn cover_marks(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return vec4f(vec2f(f32((index << 1u) & 2u), f32(index & 2u)) * 2.0 - 1.0, 0.0, 1.0);
+}
+
+/// 1 where light may come through some of 4 × 4 texels.
+@fragment
+fn mark_thin(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let corner = vec2i(position.xy) * TEXELS_OF_MARK;
+    var most = 0.0;
+    var i = 0;
+    loop {
+        let texel = corner + vec2i(i % TEXELS_OF_MARK, i / TEXELS_OF_MARK);
+        let chart = textureLoad(charts, texel, 0).x;
+        let fine = point_under(chart, 2 * texel);
+        var l = 0u;
+        loop {
+            most = max(most, select(most_through(l, fine), 0.0, chart == NO_CHART));
+            continuing {
+                l++;
+                break if l >= arrayLength(&lights);
+            }
+        }
+        continuing {
+            i++;
+            break if i >= TEXELS_OF_MARK * TEXELS_OF_MARK;
+        }
+    }
+    return vec4f(select(0.0, 1.0, most > MARKED));
+}
+
+/// The most that any Gaussian lets through of a light, by the nearest texels; nothing where the light is faced.
+fn most_through(l: u32, texel: vec2i) -> f32 {
+    let component = component_of(l);
+    let faces = textureLoad(finest, texel, layer_of(0u, l), 0)[component] <= 0.0;
+    let uv = (vec2f(texel) + 0.5) / vec2f(textureDimensions(finest));
+    let own_texel = vec2i(uv * vec2f(textureDimensions(levels)));
+    let finer_texel = vec2i(uv * vec2f(textureDimensions(finer)));
+    var most = 0.0;
+    var i = 0u;
+    loop {
+        let layer = layer_of(slabs.all[i].before, l);
+        let own = textureLoad(levels, own_texel, layer, 0);
+        let one_up = textureLoad(finer, finer_texel, layer, 0);
+        let d_mm = select(own, one_up, slabs.all[i].before_is_finer == 1u)[component];
+        most = max(most, slab_weight(d_mm, slabs.all[i].variance_mm2));
+        continuing {
+            i++;
+            break if i >= slabs.count;
+        }
+    }
+    return select(most, 0.0, faces);
+}
 
 @fragment
 fn transmit(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let chart = textureLoad(charts, vec2i(position.xy), 0).x;
-    if chart == NO_CHART || slab.variance_mm2 <= 0.0 {
+    let here = under(vec2i(position.xy));
+    if here.chart == NO_CHART {
         return vec4f(0.0);
     }
-    let texel = point_under(chart, 2 * vec2i(position.xy));
-    let place = textureLoad(places, texel, 0);
+    let place = textureLoad(places, here.texel, 0);
     let point_mm = bitcast<vec3f>(place.xyz);
     let normal = unpack_unit(place.w);
-    let uv = (vec2f(texel) + 0.5) / vec2f(textureDimensions(places));
     var sum = vec3f(0.0);
-    for (var l = 0u; l < arrayLength(&lights); l++) {
-        let towards = sample_light(l, point_mm);
-        let through = slab_weight(distance_before_mm(l, uv, chart));
-        if through > VISIBLE && dot(normal, towards.dir_to_light) < 0.0 {
-            let there = light_facing_surface(map_of(l), depths, surfaces, point_mm, slab.object);
-            let apart_mm = apart_mm(uv, normal, chart, there) - uncertain_mm(there, towards.dir_to_light);
-            let faded = select(0.0, through * fade_out(max(apart_mm, 0.0)), there.found && !there.itself);
-            sum += light_at(there) * (faded * share(l, there));
+    var l = 0u;
+    loop {
+        let dir_to_light = sample_light(l, point_mm).dir_to_light;
+        let there = light_facing_surface(map_of(l), depths, surfaces, point_mm, slabs.object);
+        let comes_through = there.found && !there.itself && dot(normal, dir_to_light) < 0.0;
+        let apart_mm = max(apart_mm(here.uv, normal, here.chart, there) - uncertain_mm(there, dir_to_light), 0.0);
+        sum += select(vec3f(0.0), through_all(l, here, there, apart_mm) * share(l, there), comes_through);
+        continuing {
+            l++;
+            break if l >= arrayLength(&lights);
         }
     }
-    return vec4f(slab.weight * sum, 0.0);
+    return vec4f(sum, 0.0);
+}
+
+/// Light of one place that comes through to another by all Gaussians.
+fn through_all(l: u32, here: Under, there: LightFacing, apart_mm: f32) -> vec3f {
+    let lit = on_levels(level_charts, there.uv, there.chart);
+    let instead = instead_of_level(finer, finer_charts, slabs.finer_layer, finest, there.uv, there.chart).rgb;
+    var sum = vec3f(0.0);
+    var i = 0u;
+    loop {
+        let variance_mm2 = slabs.all[i].variance_mm2;
+        let through = slab_weight(distance_before_mm(i, l, here), variance_mm2) * fade_out(apart_mm, variance_mm2);
+        let light = select(instead, blend_layer(levels, slabs.all[i].layer, lit.texels, lit.weights).rgb, lit.covered);
+        sum += slabs.all[i].weight * light * select(0.0, through, through > VISIBLE);
+        continuing {
+            i++;
+            break if i >= slabs.count;
+        }
+    }
+    return sum;
 }
 
 /// The first texel of the chart under one of half the size.
@@ -69,22 +175,30 @@ fn point_under(chart: u32, corner: vec2i) -> vec2i {
     return corner;
 }
 
-/// The blurred distance towards a light, mm. With one light it rides in alpha, with several in further layers.
-fn distance_before_mm(l: u32, uv: vec2f, chart: u32) -> f32 {
-    let layer = select(0u, 1u + l / 4u, slab.many_lights == 1u);
-    let component = select(3u, l % 4u, slab.many_lights == 1u);
-    return sample_level(before, before_charts, finest, atlas_charts, finest, layer, uv, chart)[component];
+/// Layer of a level, told by its first one, that holds the distance towards a light. With one light it rides in alpha, with
+/// several in further layers.
+fn layer_of(level: u32, l: u32) -> u32 {
+    return level + select(0u, 1u + l / 4u, slabs.many_lights == 1u);
 }
 
-fn light_at(there: LightFacing) -> vec3f {
-    return sample_level(
-        level, level_charts, finer, finer_charts, finest, 0u, there.uv, there.chart,
-    ).rgb;
+fn component_of(l: u32) -> u32 {
+    return select(3u, l % 4u, slabs.many_lights == 1u);
+}
+
+/// The distance towards a light, blurred by the Gaussian before, mm.
+fn distance_before_mm(i: u32, l: u32, here: Under) -> f32 {
+    let layer = layer_of(slabs.all[i].before, l);
+    let is_finer = slabs.all[i].before_is_finer == 1u;
+    let own = blend_layer(levels, layer, here.own.texels, here.own.weights);
+    let one_up = blend_layer(finer, layer, here.finer.texels, here.finer.weights);
+    let unblurred = textureLoad(finest, here.texel, layer_of(0u, l), 0);
+    let covered = select(here.own.covered, here.finer.covered, is_finer);
+    return select(unblurred, select(own, one_up, is_finer), covered)[component_of(l)];
 }
 
 /// Share of a light in what falls on its light-facing side, so that light counted once is not counted again.
 fn share(l: u32, there: LightFacing) -> f32 {
-    if slab.many_lights == 0u {
+    if slabs.many_lights == 0u {
         return 1.0;
     }
     let texels = around(there.uv, textureDimensions(shares));
@@ -115,11 +229,11 @@ fn uncertain_mm(there: LightFacing, dir_to_light: vec3f) -> f32 {
 }
 
 /// exp(-d²/2v): what a slab of thickness d leaves of a Gaussian of variance v.
-fn slab_weight(d_mm: f32) -> f32 {
-    return exp(-d_mm * d_mm / (2.0 * slab.variance_mm2));
+fn slab_weight(d_mm: f32, variance_mm2: f32) -> f32 {
+    return exp(-d_mm * d_mm / (2.0 * variance_mm2));
 }
 
 /// 0 where both places are one, 1 from six standard deviations on.
-fn fade_out(apart_mm: f32) -> f32 {
-    return min(apart_mm / (FADE_DEVIATIONS * sqrt(slab.variance_mm2)), 1.0);
+fn fade_out(apart_mm: f32, variance_mm2: f32) -> f32 {
+    return min(apart_mm / (FADE_DEVIATIONS * sqrt(variance_mm2)), 1.0);
 }

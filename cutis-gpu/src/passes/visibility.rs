@@ -2,7 +2,7 @@
 //! (`visibility`, `half_size`), this reads the maps of the lights.
 
 use crate::Gpu;
-use crate::map::Map;
+use crate::map::{Map, View};
 use crate::passes::atlas::AtlasMaps;
 use crate::passes::over_charts;
 use crate::passes::shadow::ShadowMaps;
@@ -38,32 +38,32 @@ pub struct Group {
 /// The pass's pipeline.
 #[derive(Debug)]
 pub struct VisibilityPass {
-    pipeline: Pipeline,
+    soft: Pipeline,
+    sharp: Pipeline,
 }
 
 impl VisibilityPass {
     /// Compiles it.
     pub fn new(gpu: &Gpu) -> Self {
-        let blueprint = Blueprint {
-            name: "shadows",
-            source: shaders::VISIBILITY,
-            entries: ["cover_run", "see_lights"],
-            targets: &[Format::Rgba8Unorm, Format::Rgba16Float],
-            additive: false,
-            depth: false,
+        let pipeline = |entry| {
+            let entries = ["cover_run", entry];
+            let (name, source) = ("shadows", shaders::VISIBILITY);
+            let targets = &[Format::Rgba8Unorm, Format::Rgba16Float];
+            Pipeline::new(gpu, &Blueprint { name, source, entries, targets, additive: false, depth: false })
         };
-        Self { pipeline: Pipeline::new(gpu, &blueprint) }
+        Self { soft: pipeline("see_lights"), sharp: pipeline("see_sharp_lights") }
     }
 
-    /// Looks at up to four lights; `targets` are the fractions seen and the distances.
+    /// Looks at up to four lights, of which `any_extent` says whether one has an extent; `targets` are the fractions seen and
+    /// the distances.
     pub fn step(
         &self,
         gpu: &Gpu,
-        group: Group,
+        (group, any_extent): (Group, bool),
         (lights, shadows): (&wgpu::Buffer, &ShadowMaps),
         atlas: &AtlasMaps,
         charts: &ChartTexture,
-        targets: [&wgpu::TextureView; 2],
+        targets: [&View; 2],
     ) -> Step {
         let numbers = gpu.uniform("group of lights", &group);
         let bound = [
@@ -75,7 +75,8 @@ impl VisibilityPass {
             (6, Bound::Texture(&shadows.surfaces.array)),
             (7, Bound::Texture(charts.map.view())),
         ];
-        over_charts(gpu, &self.pipeline, charts, &bound, &targets, false)
+        let pipeline = if any_extent { &self.soft } else { &self.sharp };
+        over_charts(gpu, pipeline, charts, &bound, &targets, false)
     }
 }
 

@@ -2,7 +2,8 @@
 // (Fernando 2005) and the translucent shadow map.
 //
 // The bias follows from the map: no texel of it may hold a depth that the surface under the point itself has within
-// that texel. The surface is taken for its tangent plane, moved outwards by as much as it may be curved.
+// that texel. The surface is taken for its tangent plane, moved outwards by as much as it may be curved; but where the map
+// shows another surface in front of it, nothing there is its own, and nothing is allowed for.
 
 @group(0) @binding(1) var<storage, read> lights: array<Light>;
 @group(0) @binding(2) var<uniform> group_of: Group;
@@ -34,33 +35,51 @@ struct Visibility {
 const SEARCH_SAMPLES: u32 = 12u;
 /// Stream of random numbers this pass draws from; one per light from here on.
 const STREAM: u32 = 0x100u;
-/// Half the diagonal of two texels: what a filtered read takes in around its place.
-const READ_TEXELS: f32 = 1.42;
+/// Share of what a surface's depth changes by within a texel that its curvature may add to that of its tangent plane.
+const BENT: f32 = 0.15;
 /// Slope of a surface against a map's plane beyond which the map says nothing about it.
 const MAX_SLOPE: f32 = 12.0;
 
 @fragment
 fn see_lights(@builtin(position) position: vec4f) -> Visibility {
+    return visibility_at(vec2i(position.xy), true);
+}
+
+/// For lights of which none has an extent: most of the work is left out when this is compiled.
+@fragment
+fn see_sharp_lights(@builtin(position) position: vec4f) -> Visibility {
+    return visibility_at(vec2i(position.xy), false);
+}
+
+fn visibility_at(texel: vec2i, any_extent: bool) -> Visibility {
     var result = Visibility(vec4f(0.0), vec4f(0.0));
-    let texel = vec2i(position.xy);
-    if textureLoad(charts, texel, 0).x == NO_CHART {
+    let chart = textureLoad(charts, texel, 0).x;
+    if chart == NO_CHART {
         return result;
     }
     let place = textureLoad(places, texel, 0);
     let point_mm = bitcast<vec3f>(place.xyz);
     let normal = unpack_unit(place.w);
-    let lift_mm = textureLoad(stretch_map, texel, 0).z;
-    for (var i = 0u; i < group_of.light_count; i++) {
+    let stretch = textureLoad(stretch_map, texel, 0).xyz;
+    let size = vec2f(textureDimensions(charts));
+    let own = Own(point_mm + normal * stretch.z, normal, (vec2f(texel) + 0.5) / size, size * stretch.xy, chart);
+    var i = 0u;
+    loop {
         let l = group_of.first_light + i;
         let towards = sample_light(l, point_mm);
         let map = map_of(l);
         let faces = dot(normal, towards.dir_to_light) >= 0.0;
         if faces {
             let shift = random2(vec2u(texel), STREAM + l);
-            result.seen[i] = visible_fraction(map, lights[l].extent, point_mm + normal * lift_mm, normal, shift);
+            let extent = select(0.0, lights[l].extent, any_extent);
+            result.seen[i] = visible_fraction(map, extent, own, shift);
         }
         if !faces {
             result.distance_mm[i] = distance_mm(map, point_mm, normal, towards.dir_to_light);
+        }
+        continuing {
+            i++;
+            break if i >= group_of.light_count;
         }
     }
     return result;
@@ -77,6 +96,15 @@ fn distance_mm(map: LightMap, point_mm: vec3f, normal: vec3f, dir_to_light: vec3
     return min(corrected_mm(there.distance_mm, normal, normal_there, dir_to_light), group_of.opaque_mm);
 }
 
+/// A point and the surface that it lies on.
+struct Own {
+    point_mm: vec3f,
+    normal: vec3f,
+    uv: vec2f,
+    mm_per_uv: vec2f,
+    chart: u32,
+}
+
 /// A point before a light's map.
 struct Receiver {
     axes_mm: vec3f,
@@ -85,19 +113,26 @@ struct Receiver {
     normal: vec3f,
     /// Depth that may be missed within one texel, mm.
     bias_mm: f32,
+    /// Whether the map shows another surface in the point's place: then nothing there is taken for its own.
+    covered: bool,
 }
 
-fn visible_fraction(map: LightMap, extent: f32, point_mm: vec3f, normal: vec3f, shift: vec2f) -> f32 {
+fn visible_fraction(map: LightMap, extent: f32, own: Own, shift: vec2f) -> f32 {
     if map.layer == NO_MAP {
         return 1.0;
     }
-    let to = receiver(map, point_mm, normal);
+    let to = receiver(map, own);
     if any(to.uv < vec2f(0.0)) || any(to.uv > vec2f(1.0)) {
         return 1.0;
     }
     if extent <= 0.0 {
         return lit_share(map, to, to.uv);
     }
+    return soft_share(map, extent, to, shift);
+}
+
+/// Share of a disc of light that is seen.
+fn soft_share(map: LightMap, extent: f32, to: Receiver, shift: vec2f) -> f32 {
     let found_mm = blocker_depth_mm(map, extent, to, shift);
     // The horizon is the same at any depth of the cone to the light.
     let hidden_by_mm = select(to.axes_mm.z - 1.0, found_mm, found_mm > 0.0);
@@ -106,11 +141,31 @@ fn visible_fraction(map: LightMap, extent: f32, point_mm: vec3f, normal: vec3f, 
     let is_clear = found_mm <= 0.0 && is_high(map, to, radius, hidden_by_mm);
     let samples = select(group_of.samples, 0u, is_clear);
     var sum = 0.0;
-    for (var s = 0u; s < samples; s++) {
+    var s = 0u;
+    loop {
         let uv = to.uv + radius * disc(r2_point(s, shift));
         sum += select(0.0, lit_share(map, to, uv), height_mm(map, to, uv, hidden_by_mm) > 0.0);
+        continuing {
+            s++;
+            break if s >= samples;
+        }
     }
-    return select(1.0, sum / f32(group_of.samples), samples > 0u);
+    return select(sum / f32(group_of.samples), 1.0, is_clear);
+}
+
+/// Whether what the map shows at a place lies before the point's tangent plane.
+fn hides(map: LightMap, to: Receiver, uv: vec2f) -> bool {
+    return lit(map, to, texel_at(uv)) == 0.0 && inside(uv);
+}
+
+/// What is nearest to the light at a place of the map, mm.
+fn nearest_mm(map: LightMap, uv: vec2f) -> f32 {
+    return textureLoad(depths, texel_at(uv), map.layer, 0).x;
+}
+
+fn texel_at(uv: vec2f) -> vec2i {
+    let size = vec2i(textureDimensions(depths));
+    return clamp(vec2i(uv * vec2f(size)), vec2i(0), size - 1);
 }
 
 /// How high above the point's tangent plane a place of the map lies at a depth, mm.
@@ -124,15 +179,27 @@ fn is_high(map: LightMap, to: Receiver, radius: f32, depth_mm: f32) -> bool {
     return height_mm(map, to, to.uv, depth_mm) > 2.0 * radius * map_half_width_mm(map, depth_mm);
 }
 
-fn receiver(map: LightMap, point_mm: vec3f, normal: vec3f) -> Receiver {
-    let n = vec3f(dot(map.right, normal), dot(map.up, normal), dot(map.forward, normal));
-    let depth_mm = in_map_axes(map, point_mm).z;
+fn receiver(map: LightMap, own: Own) -> Receiver {
+    let n = vec3f(dot(map.right, own.normal), dot(map.up, own.normal), dot(map.forward, own.normal));
+    let depth_mm = in_map_axes(map, own.point_mm).z;
     let texel_mm = 2.0 * map_half_width_mm(map, depth_mm) / f32(textureDimensions(depths).x);
     // Half a texel outwards: the surface may be curved, and the map holds flat triangles.
-    let axes_mm = in_map_axes(map, point_mm + normal * (0.5 * texel_mm));
+    let axes_mm = in_map_axes(map, own.point_mm + own.normal * (0.5 * texel_mm));
+    let uv = map_uv(map, axes_mm);
     let slope = min(length(n.xy) / max(abs(n.z), 1e-3), MAX_SLOPE);
+    let covered = nearest_mm(map, uv) < depth_mm - texel_mm && is_other(map, uv, own, 2.0 * texel_mm * (1.0 + slope));
+    let bent_mm = select(BENT * texel_mm * slope, 0.0, covered);
     // The last term is rounding.
-    return Receiver(axes_mm, map_uv(map, axes_mm), n, 0.5 * texel_mm * slope * READ_TEXELS + 2e-6 * depth_mm);
+    return Receiver(axes_mm, uv, n, bent_mm + 2e-6 * depth_mm, covered);
+}
+
+/// Whether the map shows another surface at a place than the point's own, which goes on there for `itself_mm`. Between charts
+/// of one object nothing is known.
+fn is_other(map: LightMap, uv: vec2f, own: Own, itself_mm: f32) -> bool {
+    let shown = textureLoad(surfaces, texel_at(uv), map.layer, 0).xy;
+    let along_mm = length((unpack2x16unorm(shown.x) - own.uv) * own.mm_per_uv);
+    let same_chart = (shown.y & 65535u) == own.chart;
+    return (shown.y >> 16u) != group_of.object || (same_chart && along_mm > itself_mm);
 }
 
 /// Radius on the map of the cone from a point to the light's disc, where something at `hidden_by_mm` cuts it.
@@ -149,13 +216,16 @@ fn blocker_depth_mm(map: LightMap, extent: f32, to: Receiver, shift: vec2f) -> f
     let radius = disc_radius(map, extent, to.axes_mm.z, map.near_mm);
     var sum_mm = 0.0;
     var count = 0.0;
-    for (var s = 0u; s < select(0u, SEARCH_SAMPLES, extent > 0.0); s++) {
+    var s = 0u;
+    loop {
         let uv = to.uv + radius * disc(r2_point(s, shift));
-        let texel = vec2i(uv * vec2f(textureDimensions(depths)));
-        let depth_mm = textureLoad(depths, texel, map.layer, 0).x;
-        if depth_mm < plane_depth_mm(map, to, uv) - to.bias_mm && inside(uv) {
-            sum_mm += depth_mm;
+        if hides(map, to, uv) {
+            sum_mm += nearest_mm(map, uv);
             count += 1.0;
+        }
+        continuing {
+            s++;
+            break if s >= SEARCH_SAMPLES;
         }
     }
     return select(0.0, sum_mm / max(count, 1.0), count > 0.0);
@@ -168,9 +238,12 @@ fn plane_depth_mm(map: LightMap, to: Receiver, uv: vec2f) -> f32 {
     if map.directional {
         depth_mm += dot(to.normal.xy, to.axes_mm.xy - place) / min(to.normal.z, -1e-3);
     } else {
-        depth_mm = dot(to.normal, to.axes_mm) / min(dot(to.normal, vec3f(place, 1.0)), -1e-3);
+        let facing_mm = dot(to.normal, to.axes_mm);
+        let on_plane_mm = facing_mm / min(dot(to.normal, vec3f(place, 1.0)), -1e-3);
+        // Moved outwards, a surface at a grazing angle may turn its back: then its plane says nothing.
+        depth_mm = select(depth_mm, on_plane_mm, facing_mm < 0.0);
     }
-    return clamp(depth_mm, map.near_mm, to.axes_mm.z);
+    return select(clamp(depth_mm, map.near_mm, to.axes_mm.z), to.axes_mm.z, to.covered);
 }
 
 fn inside(uv: vec2f) -> bool {
@@ -182,13 +255,15 @@ fn lit_share(map: LightMap, to: Receiver, uv: vec2f) -> f32 {
     let place = uv * vec2f(textureDimensions(depths)) - 0.5;
     let f = fract(place);
     let corner = vec2i(floor(place));
-    let limit_mm = plane_depth_mm(map, to, uv) - to.bias_mm;
-    let upper = mix(lit(map, corner, limit_mm), lit(map, corner + vec2i(1, 0), limit_mm), f.x);
-    let lower = mix(lit(map, corner + vec2i(0, 1), limit_mm), lit(map, corner + vec2i(1, 1), limit_mm), f.x);
+    let upper = mix(lit(map, to, corner), lit(map, to, corner + vec2i(1, 0)), f.x);
+    let lower = mix(lit(map, to, corner + vec2i(0, 1)), lit(map, to, corner + vec2i(1, 1)), f.x);
     return select(1.0, mix(upper, lower, f.y), inside(uv));
 }
 
-fn lit(map: LightMap, texel: vec2i, limit_mm: f32) -> f32 {
-    let clamped = clamp(texel, vec2i(0), vec2i(textureDimensions(depths)) - 1);
+/// 1 unless what a texel shows lies before the point's tangent plane there.
+fn lit(map: LightMap, to: Receiver, texel: vec2i) -> f32 {
+    let size = vec2i(textureDimensions(depths));
+    let clamped = clamp(texel, vec2i(0), size - 1);
+    let limit_mm = plane_depth_mm(map, to, (vec2f(clamped) + 0.5) / vec2f(size)) - to.bias_mm;
     return select(0.0, 1.0, textureLoad(depths, clamped, map.layer, 0).x >= limit_mm);
 }

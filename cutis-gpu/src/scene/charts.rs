@@ -21,6 +21,10 @@ pub struct ChartTexture {
     pub tiles: wgpu::Buffer,
     /// Number of those runs.
     pub runs: u32,
+    /// The same tiles, each a run of its own.
+    pub single_tiles: wgpu::Buffer,
+    /// Number of those tiles.
+    pub tile_count: u32,
 }
 
 impl ChartTexture {
@@ -33,9 +37,16 @@ impl ChartTexture {
         let bytes: Vec<u8> = codes.flat_map(u16::to_le_bytes).collect();
         let map = Map::filled(gpu, "charts", [size, size], wgpu::TextureFormat::Rg16Uint, &bytes);
         let runs = runs(charts);
-        let mut tiles = vec![size];
-        tiles.extend(&runs);
-        Self { size, map, tiles: gpu.storage("tiles", &tiles), runs: runs.len() as u32 }
+        let singles = single_tiles(&runs);
+        let buffer = |label, codes: &[u32]| gpu.storage(label, &[&[size], codes].concat());
+        Self {
+            size,
+            map,
+            tiles: buffer("runs of tiles", &runs),
+            runs: runs.len() as u32,
+            single_tiles: buffer("tiles", &singles),
+            tile_count: singles.len() as u32,
+        }
     }
 }
 
@@ -67,6 +78,15 @@ fn runs(charts: &ChartMap) -> Vec<u32> {
     runs
 }
 
+/// Every tile of some runs as a run of its own.
+fn single_tiles(runs: &[u32]) -> Vec<u32> {
+    let tiles = |&run: &u32| {
+        let (row, end, first) = (run >> 20, (run >> 10) & 1023, run & 1023);
+        (first..end).map(move |column| row << 20 | (column + 1) << 10 | column)
+    };
+    runs.iter().flat_map(tiles).collect()
+}
+
 /// The triangle under every texel of the atlas, as `passes/atlas.wgsl` reads it.
 pub fn surface_texture(gpu: &Gpu, atlas: &Atlas) -> Map {
     let size = atlas.size as u32;
@@ -87,7 +107,10 @@ mod tests {
         // One texel in the second tile of the first row, and a bar through the last row of tiles.
         let chart = |i: usize| if i == 5 * size + 20 || i / size == 50 { 3 } else { NO_CHART };
         let charts = ChartMap::new(size, (0..size * size).map(chart).collect());
-        assert_eq!(runs(&charts), [2 << 10 | 1, 3 << 20 | 4 << 10]);
+        let runs = runs(&charts);
+        assert_eq!(runs, [2 << 10 | 1, 3 << 20 | 4 << 10]);
+        let last_row = [1, 2, 3, 4].map(|end| 3 << 20 | end << 10 | (end - 1));
+        assert_eq!(single_tiles(&runs), [&[2 << 10 | 1], last_row.as_slice()].concat());
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::GpuScene;
 use super::object::ObjectMaps;
 use crate::map::Map;
 use crate::passes::Passes;
-use crate::passes::diffusion::Level;
+use crate::passes::levels::Level;
 use crate::passes::resolve::{Canvas, LAYER, LayerKind};
 use crate::readback::read_layer;
 use crate::{Gpu, GpuError};

@@ -10,6 +10,7 @@ pub mod material;
 pub mod object;
 pub mod shared;
 
+use crate::cost::Cost;
 use crate::map::Map;
 use crate::passes::Passes;
 use crate::passes::resolve::{Canvas, PICTURE};
@@ -53,6 +54,7 @@ pub struct GpuScene {
     /// Whether the geometry has changed since the last frame.
     changed: AtomicBool,
     timing: Timing,
+    memory_bytes: u64,
 }
 
 /// Why a scene cannot be drawn by the device.
@@ -78,6 +80,7 @@ impl GpuScene {
         settings: &Settings,
         progress: &dyn Progress,
     ) -> Result<Self, SceneError> {
+        let gpu = &gpu.counting();
         let grid = (settings.samples_per_pixel as f32).sqrt().ceil() as u32;
         check_sizes(gpu, settings, grid)?;
         let filtered = scene.environment.as_ref().map(FilteredEnvironment::new);
@@ -97,10 +100,13 @@ impl GpuScene {
             steps: Vec::new(),
             changed: AtomicBool::new(true),
             timing: Timing::new(gpu, 0),
+            memory_bytes: 0,
         };
         let steps = this.add_objects(gpu, passes, scene, settings, progress)?;
         this.add_steps(gpu, passes, steps);
         this.timing = Timing::new(gpu, this.surface_steps.len() + this.steps.len());
+        this.memory_bytes = gpu.asked_bytes();
+        gpu.check()?;
         Ok(this)
     }
 
@@ -164,6 +170,9 @@ impl GpuScene {
             ));
         }
         for (i, maps) in self.objects.iter().enumerate() {
+            self.steps.push(passes.resolve.nearest_step(gpu, camera, &maps.geometry, &self.depth, i == 0));
+        }
+        for (i, maps) in self.objects.iter().enumerate() {
             let canvas = Canvas {
                 samples: &self.samples,
                 depth: &self.depth,
@@ -191,11 +200,25 @@ impl GpuScene {
         self.surface_steps.iter().filter(move |_| changed).chain(&self.steps)
     }
 
+    /// Bytes of all textures and buffers that it keeps, those of single frames left out.
+    pub fn memory_bytes(&self) -> u64 {
+        self.memory_bytes
+    }
+
+    /// What every step of a frame costs at least, while the geometry stays.
+    pub fn costs(&self) -> Vec<Cost> {
+        self.steps.iter().map(Cost::of).collect()
+    }
+
     /// Draws a frame, without waiting for it.
-    pub fn draw(&self, gpu: &Gpu) {
+    ///
+    /// # Errors
+    /// If the device has refused something.
+    pub fn draw(&self, gpu: &Gpu) -> Result<(), GpuError> {
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         self.due().for_each(|step| step.encode(&mut encoder, None));
         gpu.queue.submit([encoder.finish()]);
+        gpu.check()
     }
 
     /// Draws a frame and tells how long each pass took.

@@ -4,10 +4,11 @@ use super::charts::{ChartTexture, surface_texture};
 use super::geometry::Geometry;
 use super::material::MaterialMaps;
 use super::shared::Shared;
-use crate::map::Map;
+use crate::map::{Map, View};
 use crate::passes::atlas::AtlasMaps;
-use crate::passes::diffusion::{Level, Levels};
+use crate::passes::diffusion::shortened;
 use crate::passes::irradiance::IrradianceInputs;
+use crate::passes::levels::{Level, Levels};
 use crate::passes::resolve::ResolveInputs;
 use crate::passes::shares::ShareGroup;
 use crate::passes::transmission::TransmissionInputs;
@@ -101,7 +102,7 @@ impl ObjectMaps {
     ) -> Result<(Self, ObjectSteps), GpuError> {
         let Prepared { atlas: unrolled, texel_mm, kernel, rho_dt } = prepared;
         let size = unrolled.size as u32;
-        let plan = plan(unrolled.size, texel_mm, &kernel.variances_mm2);
+        let plan = shortened(&plan(unrolled.size, texel_mm, &kernel.variances_mm2), texel_mm);
         tracing::debug!("plan of '{}' with texels of {texel_mm} mm: {plan:?}", object.name);
         let charts = chart_textures(gpu, &unrolled, &plan);
         let geometry = Geometry::new(gpu, object)?;
@@ -124,7 +125,7 @@ impl ObjectMaps {
             transmission: Map::square(gpu, "transmission", size / 2, 1, Format::Rgba16Float),
             ambient: ambient_texture(gpu, ambient),
             rho_dt: rho_dt_texture(gpu, &rho_dt),
-            levels: Levels { all: Vec::new() },
+            levels: Levels::new(gpu, &charts, light_layers(shared), &plan),
             geometry,
             kernel,
             atlas,
@@ -132,8 +133,7 @@ impl ObjectMaps {
             material,
         };
         let light = Lighting { gpu, passes, shared, number, maps: &maps };
-        let Lit { levels, shares } = light.steps(&plan, &mut steps);
-        maps.levels = levels;
+        let shares = light.steps((&plan, texel_mm), &mut steps);
         steps.light.extend(passes.gather.steps(gpu, &maps.kernel, &maps.levels, maps.local.view()));
         let inputs = TransmissionInputs {
             object: number,
@@ -173,7 +173,7 @@ impl ObjectMaps {
 
     /// The stretch in the form of a level.
     pub fn stretch_level(&self) -> Level {
-        Level { charts: self.charts[0].clone(), light: self.atlas.stretch.clone() }
+        Level { charts: self.charts[0].clone(), light: self.atlas.stretch.clone(), size: 0 }
     }
 }
 
@@ -186,21 +186,15 @@ struct Lighting<'a> {
     maps: &'a ObjectMaps,
 }
 
-/// Light in the textures.
-struct Lit {
-    levels: Levels,
-    shares: Option<Map>,
-}
-
 impl Lighting<'_> {
-    fn steps(&self, plan: &[Action], all: &mut ObjectSteps) -> Lit {
+    /// Adds its steps by a plan for texels of a width in mm. Gives each light's share, where there are several.
+    fn steps(&self, (plan, texel_mm): (&[Action], f32), all: &mut ObjectSteps) -> Option<Map> {
         let steps = &mut all.light;
         let Self { gpu, passes, shared, maps, .. } = *self;
         let size = maps.charts[0].size;
         let groups = shared.light_count.div_ceil(LIGHTS_TOGETHER) as u32;
         let many = shared.light_count > 1;
-        let layers = if many { 1 + groups } else { 1 };
-        let light = Map::square(gpu, "irradiance", size, layers, Format::Rgba16Float);
+        let light = &maps.levels.all[0].light;
         // With several lights all distances live in further layers of the light, and this stays empty.
         let distances = Map::square(gpu, "distance", if many { 1 } else { size }, 1, Format::Rgba16Float);
         for group in 0..groups {
@@ -230,13 +224,13 @@ impl Lighting<'_> {
             shares
         });
         let stretch = &maps.atlas.stretch;
-        let diffusion = passes.diffusion.steps(gpu, &maps.charts, &light, stretch, plan);
+        let diffusion = passes.diffusion.steps(gpu, &maps.charts, &maps.levels, stretch, plan, texel_mm);
         steps.extend(diffusion.blurs);
         all.surface.extend(diffusion.taps);
-        Lit { levels: diffusion.levels, shares }
+        shares
     }
 
-    fn visibility(&self, group: u32, distances: &wgpu::TextureView) -> Step {
+    fn visibility(&self, group: u32, distances: &View) -> Step {
         let Self { gpu, passes, shared, maps, .. } = *self;
         let first = group as usize * LIGHTS_TOGETHER;
         let numbers = Group {
@@ -250,13 +244,19 @@ impl Lighting<'_> {
         let targets = [&maps.visibility.layers[group as usize], distances];
         passes.visibility.step(
             gpu,
-            numbers,
+            (numbers, shared.any_extent),
             (&shared.lights, &shared.shadows),
             &maps.atlas,
             &maps.charts[0],
             targets,
         )
     }
+}
+
+/// Layers of the light: with several lights, their distances ride in further ones.
+fn light_layers(shared: &Shared) -> u32 {
+    let many = shared.light_count > 1;
+    if many { 1 + shared.light_count.div_ceil(LIGHTS_TOGETHER) as u32 } else { 1 }
 }
 
 /// Charts of every size that is needed: by the plan, and by the map of occlusion.

@@ -23,6 +23,8 @@ pub struct Shared {
     pub lights: wgpu::Buffer,
     /// How many there are, at least one: a scene without has a dark one.
     pub light_count: usize,
+    /// Whether any light has an extent.
+    pub any_extent: bool,
     /// Layer of the maps of each light, if it has one.
     pub layers: Vec<Option<u32>>,
     /// What the lights see.
@@ -55,6 +57,7 @@ impl Shared {
         let aspect = settings.width as f32 / settings.height as f32;
         Ok(Self {
             light_count: lights.len().max(1),
+            any_extent: lights.iter().any(|light| light.extent > 0.0),
             shadows: ShadowMaps::new(gpu, size, layers.iter().flatten().count() as u32),
             environment: EnvironmentMaps::new(gpu, filtered)?,
             camera: gpu.uniform("camera", &GpuCamera::of_scene(scene, aspect)),

@@ -7,7 +7,7 @@ pub mod tolerances;
 use cutis_gpu::map::Map;
 use cutis_gpu::passes::Passes;
 use cutis_gpu::readback::read_layer;
-use cutis_gpu::{Adapters, Gpu, GpuRenderer};
+use cutis_gpu::{Adapters, Gpu, GpuError, GpuRenderer};
 use cutis_scene::head::{HeadDetail, built_in};
 use cutis_scene::studio::{studio_environment, studio_lights};
 use cutis_scene::{Camera, Light, Material, Mesh, Object, ReadOptions, Scene, read_scene};
@@ -16,14 +16,14 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 /// A renderer on whatever adapter there is, or `None` with a line on stderr; `CUTIS_REQUIRE_GPU=1` forbids that.
-/// What wgpu refuses panics.
+/// An adapter that refuses to compile the passes fails the test.
 pub fn renderer(test: &str) -> Option<&'static GpuRenderer> {
-    static RENDERER: OnceLock<Result<GpuRenderer, String>> = OnceLock::new();
-    let renderer =
-        RENDERER.get_or_init(|| GpuRenderer::new(Adapters::Any).map_err(|error| error.to_string()));
-    match renderer {
+    static RENDERER: OnceLock<Result<GpuRenderer, GpuError>> = OnceLock::new();
+    match RENDERER.get_or_init(|| GpuRenderer::new(Adapters::Any)) {
         Ok(renderer) => Some(renderer),
         Err(why) => {
+            let is_absent = matches!(why, GpuError::NoAdapter { .. } | GpuError::NoDevice { .. });
+            assert!(is_absent, "{test}: {why}");
             let required = std::env::var_os("CUTIS_REQUIRE_GPU").is_some_and(|v| v == "1");
             assert!(!required, "{test}: {why}");
             eprintln!("SKIPPED: {test}: {why}");

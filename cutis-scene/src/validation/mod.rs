@@ -5,7 +5,7 @@
 
 mod bodies;
 mod heads;
-mod shapes;
+pub mod shapes;
 
 use crate::read::asset;
 use crate::{Scene, SceneError};

@@ -1,0 +1,51 @@
+//! What a device refuses: collected where wgpu tells it, handed out where somebody can say it.
+
+use crate::GpuError;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The first thing that went wrong since somebody last asked; what follows it is mostly its consequence.
+#[derive(Debug, Clone, Default)]
+pub struct Faults {
+    first: Arc<Mutex<Option<GpuError>>>,
+}
+
+impl Faults {
+    /// Of a device, which tells nobody else from now on.
+    pub fn of(device: &wgpu::Device) -> Self {
+        let faults = Self::default();
+        let told = faults.clone();
+        device.on_uncaptured_error(Arc::new(move |error| told.note(refusal(error))));
+        let told = faults.clone();
+        device.set_device_lost_callback(move |_, reason| told.note(GpuError::Lost { reason }));
+        faults
+    }
+
+    fn note(&self, error: GpuError) {
+        tracing::debug!("{error}");
+        self.first.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+    }
+
+    /// The first error, once.
+    ///
+    /// # Errors
+    /// If there was one.
+    pub fn check(&self) -> Result<(), GpuError> {
+        let first = self.first.lock().unwrap_or_else(PoisonError::into_inner).take();
+        first.map_or(Ok(()), Err)
+    }
+}
+
+fn refusal(error: wgpu::Error) -> GpuError {
+    match error {
+        wgpu::Error::OutOfMemory { .. } => GpuError::OutOfMemory { asked_bytes: 0 },
+        wgpu::Error::Validation { description, .. } | wgpu::Error::Internal { description, .. } => {
+            GpuError::Refused { reason: one_line(&description) }
+        }
+    }
+}
+
+/// A description in lines, as one.
+fn one_line(description: &str) -> String {
+    let lines = description.lines().map(str::trim).filter(|line| !line.is_empty());
+    lines.collect::<Vec<_>>().join(" ")
+}

@@ -4,6 +4,7 @@ mod common;
 
 use common::tolerances::{self, Tolerance};
 use common::{difference, head_in_the_studio, patch, patch_under_a_spot, renderer, scanned_head};
+use cutis_gpu::GpuRenderer;
 use cutis_render::{Aov, CpuRenderer, Renderer, Settings, Silent};
 use cutis_scene::{Light, Scene};
 use glam::Vec3;
@@ -93,4 +94,30 @@ fn drawing_again_gives_the_same_and_a_moved_camera_another() {
     assert_ne!(first, picture());
     ready.set_camera(&renderer.gpu, &scene.camera);
     assert_eq!(first, picture());
+}
+
+#[test]
+fn a_look_from_elsewhere_or_at_another_size_needs_no_new_light() {
+    let Some(renderer) = renderer("a_look_from_elsewhere_or_at_another_size_needs_no_new_light") else {
+        return;
+    };
+    let GpuRenderer { gpu, passes, .. } = renderer;
+    let scene = head_in_the_studio();
+    let settings = |side| Settings { width: side, height: side, irradiance_size: 128, ..Settings::default() };
+    let mut moved = scene.clone();
+    moved.camera.position_mm.x += 100.0;
+    let whole = |scene: &Scene, side| {
+        let ready = renderer.scene(scene, &settings(side), &Silent).expect("is uploaded");
+        ready.draw(gpu).expect("is drawn");
+        ready.picture(gpu).expect("is read")
+    };
+    let mut ready = renderer.scene(&scene, &settings(48), &Silent).expect("is uploaded");
+    let first = ready.look_timed(gpu).expect("is drawn");
+    assert!(first.iter().any(|pass| pass.name == "irradiance"), "the first look needs light");
+    assert_eq!(ready.picture(gpu).expect("is read"), whole(&scene, 48));
+    ready.set_picture(gpu, passes, &settings(32)).expect("is no larger than before");
+    ready.set_camera(gpu, &moved.camera);
+    let second = ready.look_timed(gpu).expect("is drawn");
+    assert!(second.iter().all(|pass| pass.name != "irradiance"), "{second:?}");
+    assert_eq!(ready.picture(gpu).expect("is read"), whole(&moved, 32));
 }

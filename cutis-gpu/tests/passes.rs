@@ -33,7 +33,7 @@ fn head_under_sharp_lights() -> Scene {
 struct Both<'a> {
     renderer: &'a GpuRenderer,
     gpu: GpuScene,
-    cpu: LitScene<'a>,
+    cpu: LitScene<&'a Scene>,
     scene: &'a Scene,
 }
 

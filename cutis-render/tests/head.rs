@@ -99,7 +99,7 @@ fn sixteen_against_many(scene: &mut Scene) -> [f32; 2] {
         samples_per_pixel: 16,
         ..Settings::default()
     };
-    let mut lit = LitScene::new(scene, &settings, &Silent).expect("draws");
+    let mut lit = LitScene::new(&*scene, &settings, &Silent).expect("draws");
     let few = lit.resolve(&scene.camera, &settings, &Silent);
     settings.samples_per_pixel = 100;
     difference(&few, &lit.resolve(&scene.camera, &settings, &Silent))

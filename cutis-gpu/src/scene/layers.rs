@@ -2,6 +2,7 @@
 
 use super::GpuScene;
 use super::object::ObjectMaps;
+use super::picture::Picture;
 use crate::map::Map;
 use crate::passes::Passes;
 use crate::passes::levels::Level;
@@ -35,18 +36,19 @@ impl GpuScene {
 
     /// A layer through the camera.
     fn seen_layer(&self, gpu: &Gpu, passes: &Passes, aov: Aov) -> Result<Layer, GpuError> {
-        let size = [self.pixels.width(), self.pixels.height()];
-        let samples = Map::new(gpu, "samples of a layer", size.map(|s| s * self.grid), 1, LAYER);
+        let Picture { pixels: seen, depth, grid, .. } = &self.picture;
+        let size = [seen.width(), seen.height()];
+        let samples = Map::new(gpu, "samples of a layer", size.map(|s| s * grid), 1, LAYER);
         let pixels = Map::new(gpu, "layer", size, 1, LAYER);
         let mut steps = Vec::new();
         for (i, maps) in self.objects.iter().enumerate() {
             let Some((kind, level)) = self.source(maps, aov) else { continue };
             let clear = Some(wgpu::Color::TRANSPARENT);
-            let canvas = Canvas { samples: &samples, depth: &self.depth, clear, first: i == 0 };
+            let canvas = Canvas { samples: &samples, depth, clear, first: i == 0 };
             let inputs = maps.resolve_inputs(passes, &self.shared);
             steps.push(passes.resolve.layer_step(gpu, &inputs, kind, &level, &canvas));
         }
-        steps.push(passes.downsample.step(gpu, self.grid, &samples, &pixels));
+        steps.push(passes.downsample.step(gpu, *grid, &samples, &pixels));
         let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         steps.iter().for_each(|step| step.encode(&mut encoder, None));
         gpu.queue.submit([encoder.finish()]);

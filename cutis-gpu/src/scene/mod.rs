@@ -8,14 +8,12 @@ pub mod layers;
 pub mod lights;
 pub mod material;
 pub mod object;
+mod picture;
 pub mod shared;
 
 use crate::cost::Cost;
-use crate::map::Map;
 use crate::passes::Passes;
-use crate::passes::resolve::{Canvas, PICTURE};
 use crate::passes::shadow::Drawn;
-use crate::pipeline::DEPTH;
 use crate::readback::read_layer;
 use crate::step::Step;
 use crate::timing::Timing;
@@ -29,30 +27,29 @@ use cutis_render::{PassTime, Progress, RenderError, Settings};
 use cutis_scene::{Bvh, Camera, Scene};
 use glam::{Vec3, Vec4};
 use object::{ObjectMaps, ObjectSteps, Prepared};
+use picture::Picture;
 use shared::Shared;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Everything that is needed to draw frames of one scene, at one size.
+/// Everything that is needed to draw frames of one scene.
 #[derive(Debug)]
 pub struct GpuScene {
     /// Textures of each object.
     pub objects: Vec<ObjectMaps>,
     /// What they share.
     pub shared: Shared,
-    /// The finished picture, linear.
-    pub pixels: Map,
-    samples: Map,
-    depth: Map,
-    /// Samples along a side of a pixel.
-    grid: u32,
+    /// What it is drawn on.
+    picture: Picture,
     bounds_mm: [Vec3; 2],
     background: wgpu::Color,
     /// What has to be done when the geometry has changed.
     surface_steps: Vec<Step>,
-    /// What has to be done in every frame.
-    steps: Vec<Step>,
+    /// What has to be done in every frame, before the picture.
+    light_steps: Vec<Step>,
     /// Whether the geometry has changed since the last frame.
     changed: AtomicBool,
+    /// Whether the light is that of the last frame.
+    lit: AtomicBool,
     timing: Timing,
     memory_bytes: u64,
 }
@@ -81,30 +78,25 @@ impl GpuScene {
         progress: &dyn Progress,
     ) -> Result<Self, SceneError> {
         let gpu = &gpu.counting();
-        let grid = (settings.samples_per_pixel as f32).sqrt().ceil() as u32;
-        check_sizes(gpu, settings, grid)?;
+        check_texture(gpu, settings)?;
         let filtered = scene.environment.as_ref().map(FilteredEnvironment::new);
         let shared = Shared::new(gpu, scene, settings, filtered.as_ref())?;
-        let size = [settings.width, settings.height];
-        let samples = Map::new(gpu, "samples", size.map(|s| s * grid), 1, PICTURE);
         let mut this = Self {
-            pixels: if grid > 1 { Map::new(gpu, "pixels", size, 1, PICTURE) } else { samples.clone() },
-            depth: Map::new(gpu, "depth", size.map(|s| s * grid), 1, DEPTH),
-            samples,
-            grid,
+            picture: Picture::new(gpu, settings)?,
             shared,
             objects: Vec::new(),
             bounds_mm: scene.bounds_mm().unwrap_or([Vec3::ZERO; 2]),
             background: background(scene),
             surface_steps: Vec::new(),
-            steps: Vec::new(),
+            light_steps: Vec::new(),
             changed: AtomicBool::new(true),
+            lit: AtomicBool::new(false),
             timing: Timing::new(gpu, 0),
             memory_bytes: 0,
         };
         let steps = this.add_objects(gpu, passes, scene, settings, progress)?;
         this.add_steps(gpu, passes, steps);
-        this.timing = Timing::new(gpu, this.surface_steps.len() + this.steps.len());
+        this.timing = Timing::new(gpu, this.surface_steps.len() + this.steps().count());
         this.memory_bytes = gpu.asked_bytes();
         gpu.check()?;
         Ok(this)
@@ -148,56 +140,41 @@ impl GpuScene {
             for (object, maps) in (0..).zip(&self.objects) {
                 let drawn = Drawn { light, object, ..Drawn::zeroed() };
                 let Shared { lights, shadows, .. } = &self.shared;
-                self.steps.push(passes.shadow.step(gpu, drawn, lights, &maps.geometry, shadows, layer));
+                self.light_steps.push(passes.shadow.step(gpu, drawn, lights, &maps.geometry, shadows, layer));
             }
         }
-        self.steps.extend(after);
-        self.add_picture_steps(gpu, passes);
+        self.light_steps.extend(after);
+        self.picture.lay_steps(gpu, passes, &self.shared, &self.objects, self.background);
     }
 
-    fn add_picture_steps(&mut self, gpu: &Gpu, passes: &Passes) {
-        let Shared { environment, camera, .. } = &self.shared;
-        let sky = environment.sky.as_ref();
-        if let Some(sky) = sky {
-            let samples = &self.samples;
-            self.steps.push(passes.resolve.sky_step(
-                gpu,
-                &passes.samplers,
-                camera,
-                environment,
-                sky,
-                samples,
-            ));
+    /// Draws on a picture of another size or with other samples from now on; only those of the settings count.
+    ///
+    /// # Errors
+    /// If it is larger than the device takes.
+    pub fn set_picture(&mut self, gpu: &Gpu, passes: &Passes, settings: &Settings) -> Result<(), GpuError> {
+        if !self.picture.serves(settings) {
+            self.picture = Picture::new(gpu, settings)?;
+            self.picture.lay_steps(gpu, passes, &self.shared, &self.objects, self.background);
         }
-        for (i, maps) in self.objects.iter().enumerate() {
-            self.steps.push(passes.resolve.nearest_step(gpu, camera, &maps.geometry, &self.depth, i == 0));
-        }
-        for (i, maps) in self.objects.iter().enumerate() {
-            let canvas = Canvas {
-                samples: &self.samples,
-                depth: &self.depth,
-                clear: sky.is_none().then_some(self.background),
-                first: i == 0,
-            };
-            let inputs = maps.resolve_inputs(passes, &self.shared);
-            self.steps.push(passes.resolve.step(gpu, &inputs, &canvas));
-        }
-        if self.grid > 1 {
-            self.steps.push(passes.downsample.step(gpu, self.grid, &self.samples, &self.pixels));
-        }
+        gpu.check()
     }
 
     /// Moves the camera.
     pub fn set_camera(&self, gpu: &Gpu, camera: &Camera) {
-        let aspect = self.pixels.width() as f32 / self.pixels.height() as f32;
-        let numbers = GpuCamera::new(camera, self.bounds_mm, aspect);
+        let numbers = GpuCamera::new(camera, self.bounds_mm, self.picture.aspect());
         gpu.queue.write_buffer(&self.shared.camera, 0, bytemuck::bytes_of(&numbers));
+    }
+
+    /// The steps of a frame while the geometry stays.
+    fn steps(&self) -> impl Iterator<Item = &Step> {
+        self.light_steps.iter().chain(&self.picture.steps)
     }
 
     /// The steps of the next frame.
     fn due(&self) -> impl Iterator<Item = &Step> {
         let changed = self.changed.swap(false, Ordering::Relaxed);
-        self.surface_steps.iter().filter(move |_| changed).chain(&self.steps)
+        self.lit.store(true, Ordering::Relaxed);
+        self.surface_steps.iter().filter(move |_| changed).chain(self.steps())
     }
 
     /// Bytes of all textures and buffers that it keeps, those of single frames left out.
@@ -207,7 +184,7 @@ impl GpuScene {
 
     /// What every step of a frame costs at least, while the geometry stays.
     pub fn costs(&self) -> Vec<Cost> {
-        self.steps.iter().map(Cost::of).collect()
+        self.steps().map(Cost::of).collect()
     }
 
     /// Draws a frame, without waiting for it.
@@ -229,22 +206,30 @@ impl GpuScene {
         self.timing.run(gpu, self.due())
     }
 
+    /// Draws the light of the frame before from where the camera is now, and tells how long each pass took. The whole frame,
+    /// if there was none or the geometry has changed.
+    ///
+    /// # Errors
+    /// If the device is lost.
+    pub fn look_timed(&self, gpu: &Gpu) -> Result<Vec<PassTime>, GpuError> {
+        if self.lit.load(Ordering::Relaxed) && !self.changed.load(Ordering::Relaxed) {
+            self.timing.run(gpu, self.picture.steps.iter())
+        } else {
+            self.draw_timed(gpu)
+        }
+    }
+
     /// The picture that was drawn last.
     ///
     /// # Errors
     /// If the device is lost.
     pub fn picture(&self, gpu: &Gpu) -> Result<Vec<Vec4>, GpuError> {
-        read_layer(gpu, &self.pixels, 0)
+        read_layer(gpu, &self.picture.pixels, 0)
     }
 }
 
-fn check_sizes(gpu: &Gpu, settings: &Settings, grid: u32) -> Result<(), GpuError> {
+fn check_texture(gpu: &Gpu, settings: &Settings) -> Result<(), GpuError> {
     let limit = gpu.device.limits().max_texture_dimension_2d;
-    let sides = [settings.width, settings.height].map(|side| side.saturating_mul(grid));
-    if sides[0].max(sides[1]) > limit {
-        let size = format!("{} × {} samples", sides[0], sides[1]);
-        return Err(GpuError::TooLarge { what: "the picture", size, limit: u64::from(limit) });
-    }
     if settings.irradiance_size > limit {
         let size = format!("{} texels wide", settings.irradiance_size);
         return Err(GpuError::TooLarge { what: "the irradiance texture", size, limit: u64::from(limit) });

@@ -48,12 +48,13 @@ struct Kept {
 }
 
 impl Kept {
+    /// Better light than is asked for is welcome.
     fn serves(&self, renderer: &Arc<GpuRenderer>, subject: &Subject) -> bool {
         Arc::ptr_eq(&self.renderer, renderer)
             && Arc::ptr_eq(&self.scene, subject.scene)
             && self.look.is_lit_like(subject.look)
-            && Settings { aovs: Vec::new(), ..self.settings.clone() }
-                == Settings { aovs: Vec::new(), ..subject.settings.clone() }
+            && self.settings.irradiance_size >= subject.settings.irradiance_size
+            && self.settings.shadow_samples >= subject.settings.shadow_samples
     }
 }
 
@@ -84,7 +85,7 @@ impl OnGpu {
         watch: &Watch,
     ) -> Result<Drawn, RenderError> {
         let Subject { look, settings, scene, .. } = subject;
-        let kept = match self.kept.take().filter(|kept| kept.serves(renderer, subject)) {
+        let mut kept = match self.kept.take().filter(|kept| kept.serves(renderer, subject)) {
             Some(kept) => kept,
             None => {
                 settings.check()?;
@@ -102,6 +103,7 @@ impl OnGpu {
                 }
             }
         };
+        kept.ready.set_picture(&renderer.gpu, &renderer.passes, settings).map_err(|error| because(&error))?;
         kept.ready.set_camera(&renderer.gpu, &look.camera);
         let drawn = Self::frame(renderer, &kept.ready, subject).map_err(|error| because(&error))?;
         self.kept = Some(kept);
@@ -110,7 +112,7 @@ impl OnGpu {
 
     fn frame(renderer: &GpuRenderer, ready: &GpuScene, subject: &Subject) -> Result<Drawn, GpuError> {
         let settings = &subject.settings;
-        let passes = ready.draw_timed(&renderer.gpu)?;
+        let passes = ready.look_timed(&renderer.gpu)?;
         let pixels = ready.picture(&renderer.gpu)?;
         let layers = ready.layers(&renderer.gpu, &renderer.passes, &settings.aovs, AovSpace::Picture)?;
         let wanted: Vec<_> = texture_maps().filter(|_| subject.wants_maps).collect();

@@ -1,0 +1,99 @@
+//! What the camera sees: samples, their depths and their mean.
+
+use super::object::ObjectMaps;
+use super::shared::Shared;
+use crate::map::Map;
+use crate::passes::Passes;
+use crate::passes::resolve::{Canvas, PICTURE};
+use crate::pipeline::DEPTH;
+use crate::step::Step;
+use crate::{Gpu, GpuError};
+use cutis_render::Settings;
+
+/// A picture of one size.
+#[derive(Debug)]
+pub struct Picture {
+    /// The finished picture, linear.
+    pub pixels: Map,
+    /// Depths of the samples.
+    pub depth: Map,
+    /// Samples along a side of a pixel.
+    pub grid: u32,
+    /// What draws it, once the light is there.
+    pub steps: Vec<Step>,
+    samples: Map,
+}
+
+impl Picture {
+    /// An empty picture of the size and with the samples of the settings.
+    ///
+    /// # Errors
+    /// If it is larger than the device takes.
+    pub fn new(gpu: &Gpu, settings: &Settings) -> Result<Self, GpuError> {
+        let (size, grid) = (size(settings), grid(settings));
+        let sides = size.map(|side| side.saturating_mul(grid));
+        let limit = gpu.device.limits().max_texture_dimension_2d;
+        if sides[0].max(sides[1]) > limit {
+            let size = format!("{} × {} samples", sides[0], sides[1]);
+            return Err(GpuError::TooLarge { what: "the picture", size, limit: u64::from(limit) });
+        }
+        let samples = Map::new(gpu, "samples", sides, 1, PICTURE);
+        Ok(Self {
+            pixels: if grid > 1 { Map::new(gpu, "pixels", size, 1, PICTURE) } else { samples.clone() },
+            depth: Map::new(gpu, "depth", sides, 1, DEPTH),
+            grid,
+            steps: Vec::new(),
+            samples,
+        })
+    }
+
+    /// Whether it is what the settings ask for.
+    pub fn serves(&self, settings: &Settings) -> bool {
+        [self.pixels.width(), self.pixels.height()] == size(settings) && self.grid == grid(settings)
+    }
+
+    /// Width over height.
+    pub fn aspect(&self) -> f32 {
+        self.pixels.width() as f32 / self.pixels.height() as f32
+    }
+
+    /// Lays the steps that draw some objects before the sky or a plain background.
+    pub fn lay_steps(
+        &mut self,
+        gpu: &Gpu,
+        passes: &Passes,
+        shared: &Shared,
+        objects: &[ObjectMaps],
+        background: wgpu::Color,
+    ) {
+        let Shared { environment, camera, .. } = shared;
+        let sky = environment.sky.as_ref();
+        let resolve = &passes.resolve;
+        let of_sky =
+            sky.map(|sky| resolve.sky_step(gpu, &passes.samplers, camera, environment, sky, &self.samples));
+        self.steps = of_sky.into_iter().collect();
+        for (i, maps) in objects.iter().enumerate() {
+            self.steps.push(resolve.nearest_step(gpu, camera, &maps.geometry, &self.depth, i == 0));
+        }
+        for (i, maps) in objects.iter().enumerate() {
+            let canvas = Canvas {
+                samples: &self.samples,
+                depth: &self.depth,
+                clear: sky.is_none().then_some(background),
+                first: i == 0,
+            };
+            self.steps.push(resolve.step(gpu, &maps.resolve_inputs(passes, shared), &canvas));
+        }
+        if self.grid > 1 {
+            self.steps.push(passes.downsample.step(gpu, self.grid, &self.samples, &self.pixels));
+        }
+    }
+}
+
+fn size(settings: &Settings) -> [u32; 2] {
+    [settings.width, settings.height]
+}
+
+fn grid(settings: &Settings) -> u32 {
+    (settings.samples_per_pixel as f32).sqrt().ceil() as u32
+}

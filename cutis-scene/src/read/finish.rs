@@ -3,6 +3,7 @@
 use super::checks::{MAX_COUNT, check_mesh, warn_about_charts, wrap_charts};
 use super::file::resolve_for_user;
 use super::image::ColourSpace;
+use super::scene_file::PoseKeys;
 use super::textures::Textures;
 use super::{CameraChoice, Parts, Piece, ReadOptions};
 use crate::error::one_line;
@@ -40,6 +41,10 @@ pub(super) fn finish(mut parts: Parts, file: &Path, options: &ReadOptions) -> Re
     let mut scene = Scene { objects, lights, environment, camera, background: parts.background, warnings };
     warn_about_size(bounds_mm, &mut scene.warnings);
     light_if_dark(&mut scene, bounds_mm);
+    // Last, so that a camera and lights that nobody placed stand still while the scene moves.
+    if let Some(PoseKeys { pose, place }) = parts.pose {
+        scene.set_pose(&pose).map_err(|error| SceneError::new(file, place, error.to_string()))?;
+    }
     scene.warnings = scene.warnings.iter().map(|text| one_line(text)).collect();
     Ok(scene)
 }

@@ -57,6 +57,7 @@ struct Parts {
     environment: Option<Environment>,
     camera: CameraChoice,
     background: Option<glam::Vec3>,
+    pose: Option<scene_file::PoseKeys>,
     warnings: Vec<String>,
 }
 

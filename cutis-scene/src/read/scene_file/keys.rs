@@ -44,6 +44,16 @@ impl<'a> Keys<'a> {
         SceneError::new(self.source.file, place, reason)
     }
 
+    /// Where the table stands, for errors that are found later.
+    pub(super) fn place(&self) -> String {
+        format!("line {}, key `{}`", self.source.line(self.span.start), self.name)
+    }
+
+    /// All keys, whatever they are.
+    pub(super) fn names(&self) -> impl Iterator<Item = &'a str> {
+        self.table.iter().map(|(key, _)| key.get_ref().as_ref())
+    }
+
     fn full(&self, key: &str) -> String {
         if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
     }
@@ -142,6 +152,13 @@ impl<'a> Keys<'a> {
         Ok(Some(number))
     }
 
+    /// An angle that is written in degrees, within limits in degrees.
+    pub(super) fn radians(&self, key: &str, limits: RangeInclusive<f32>) -> Result<Option<f32>, SceneError> {
+        self.number_in(key, limits)?;
+        // In double precision, so that every angle of single precision has degrees that mean it.
+        Ok(self.double(key)?.map(|degrees| degrees.to_radians() as f32))
+    }
+
     fn check(&self, key: &str, number: f32, limits: &RangeInclusive<f32>) -> Result<(), SceneError> {
         if limits.contains(&number) {
             return Ok(());
@@ -202,6 +219,10 @@ impl<'a> Keys<'a> {
     /// A direction of any length but zero, as a unit vector.
     pub(super) fn direction(&self, key: &str) -> Result<Option<Vec3>, SceneError> {
         let Some(vector) = self.vector(key)? else { return Ok(None) };
+        // A unit vector stays as it is written: to divide it by its rounded length would only move its last digit.
+        if (vector.length_squared() - 1.0).abs() < 4.0 * f32::EPSILON {
+            return Ok(Some(vector));
+        }
         match vector.try_normalize() {
             Some(unit) => Ok(Some(unit)),
             None => Err(self.error(key, "has no direction: it is zero, or too long")),

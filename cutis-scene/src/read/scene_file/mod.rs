@@ -1,10 +1,11 @@
-//! Scene files in TOML: one mesh, its material, lights and a camera. Every key is known, every number checked, and
+//! Scene files in TOML: one mesh, its material, lights, a camera and a pose. Every key is known, every number checked, and
 //! every error names the line.
 
 mod camera;
 mod keys;
 mod light;
 mod material;
+mod pose;
 
 use super::file::{Folder, read_bytes};
 use super::textures::Textures;
@@ -16,6 +17,7 @@ use std::path::{Path, PathBuf};
 use toml::de::DeTable;
 
 pub(super) use camera::CameraKeys;
+pub(super) use pose::PoseKeys;
 
 /// Largest scene file, bytes: honest ones have one thousand.
 const MAX_BYTES: usize = 1 << 20;
@@ -58,12 +60,13 @@ pub(super) fn read(path: &Path, options: &ReadOptions) -> Result<Parts, SceneErr
 }
 
 fn to_parts(root: &Keys, mut context: Context) -> Result<Parts, SceneError> {
-    root.only(&["mesh", "material", "light", "camera"])?;
+    root.only(&["mesh", "material", "light", "camera", "pose"])?;
     let Some(mesh) = root.table("mesh")? else {
         return Err(root.error("mesh", "is missing: a scene needs [mesh] with `path` or `builtin`"));
     };
     // What is small and cheap is checked before a large mesh is read.
     let camera = root.table("camera")?.map(|keys| camera::read(&keys)).transpose()?;
+    let pose = root.table("pose")?.map(|keys| pose::read(&keys)).transpose()?;
     let mesh_source = mesh_source(&mesh, &context)?;
     let lights = light::read_all(root, &mut context)?;
     let mut parts = load(mesh_source)?;
@@ -79,6 +82,7 @@ fn to_parts(root: &Keys, mut context: Context) -> Result<Parts, SceneError> {
         parts.background = camera.background();
         parts.camera = CameraChoice::Partial(camera);
     }
+    parts.pose = pose;
     parts.warnings.append(&mut context.warnings);
     Ok(parts)
 }

@@ -21,6 +21,7 @@ pub mod projector;
 pub mod read;
 pub mod skeleton;
 pub mod solids;
+pub mod source;
 pub mod studio;
 pub mod tangents;
 pub mod texture;
@@ -28,6 +29,7 @@ pub mod topology;
 pub mod validation;
 
 mod scene;
+mod write;
 
 pub use bvh::{Bvh, Hit};
 pub use camera::{Camera, CameraRays};
@@ -43,4 +45,6 @@ pub use projector::Projector;
 pub use read::{ColourSpace, PictureFile, ReadOptions, read_image, read_picture, read_scene};
 pub use scene::Scene;
 pub use skeleton::{Influence, Joint, Skeleton};
+pub use source::{MeshOrigin, ObjectSource, TextureSource};
 pub use texture::{Texels, Texture};
+pub use write::write_scene;

@@ -4,7 +4,7 @@ use crate::charts::Charts;
 use crate::deform::{complete_targets, deformed};
 use crate::tangents::add_tangents;
 use crate::topology::{is_closed, smooth_normals, weld};
-use crate::{Material, Mesh, Pose};
+use crate::{Material, Mesh, ObjectSource, Pose};
 use glam::{Vec2, Vec3, Vec4};
 use std::sync::Arc;
 
@@ -23,6 +23,8 @@ pub struct Object {
     pub closed: bool,
     /// What it is made of.
     pub material: Material,
+    /// Where it came from; none if it was made by code.
+    pub source: Option<ObjectSource>,
     /// The pose of the mesh.
     pub(crate) pose: Pose,
     /// The mesh at rest, where it is another.
@@ -71,6 +73,7 @@ impl Object {
             point_of_vertex,
             mesh,
             material,
+            source: None,
             pose: Pose::default(),
             rest: None,
         };

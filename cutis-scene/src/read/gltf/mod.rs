@@ -12,6 +12,7 @@ mod accessor;
 mod container;
 mod light;
 mod material;
+pub(super) mod neighbours;
 mod nodes;
 mod primitive;
 mod skeleton;

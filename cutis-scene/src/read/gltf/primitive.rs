@@ -146,7 +146,8 @@ impl Gathering {
             let material = material::read(document, key, textures, warnings)?;
             let Gathered { name, place, mut mesh, .. } = gathered;
             material.uv_transform.apply(&mut mesh);
-            pieces.push(Piece { name, place, mesh, material: material.material });
+            let material = material.material;
+            pieces.push(Piece { name, place, mesh, own_material: material.clone(), material });
         }
         Ok(pieces)
     }

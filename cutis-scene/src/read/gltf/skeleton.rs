@@ -1,7 +1,7 @@
 //! Joints of a skin, ready to be turned: parents before children, everything in mm.
 //!
 //! Hands for WebXR come with joints that all hang on one node, for their program places each by itself. The names of such
-//! hands tell how they hang together (W3C WebXR Hand Input, section 3, "Skeleton Joints"), and they are read that way.
+//! hands tell how they hang together (W3C WebXR Hand Input Module, not opened), and they are read that way.
 
 use super::Document;
 use super::nodes::parents;

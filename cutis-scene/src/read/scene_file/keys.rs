@@ -5,7 +5,7 @@ use glam::Vec3;
 use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue};
 
 /// The text of a scene file.
 #[derive(Clone, Copy)]
@@ -186,9 +186,12 @@ impl<'a> Keys<'a> {
 
     /// Three finite numbers in double precision.
     pub(super) fn triple(&self, key: &str) -> Result<Option<[f64; 3]>, SceneError> {
-        let Some(value) = self.table.get(key) else { return Ok(None) };
-        let DeValue::Array(array) = value.get_ref() else {
-            return self.wrong(key, "a list of three numbers", value.get_ref());
+        self.table.get(key).map(|value| self.to_triple(key, value.get_ref())).transpose()
+    }
+
+    fn to_triple(&self, key: &str, value: &DeValue) -> Result<[f64; 3], SceneError> {
+        let DeValue::Array(array) = value else {
+            return self.wrong(key, "a list of three numbers", value);
         };
         if array.len() != 3 {
             return Err(self.error(key, format!("must be a list of three numbers, found {}", array.len())));
@@ -197,7 +200,30 @@ impl<'a> Keys<'a> {
         for (slot, item) in triple.iter_mut().zip(array.iter()) {
             *slot = self.to_number(key, item.get_ref())?;
         }
-        Ok(Some(triple))
+        Ok(triple)
+    }
+
+    /// A list of finite numbers in double precision.
+    pub(super) fn doubles(&self, key: &str, most: usize) -> Result<Option<Vec<f64>>, SceneError> {
+        let to_number = |item: &Spanned<DeValue>| self.to_number(key, item.get_ref());
+        self.array(key, most)?.map(|array| array.iter().map(to_number).collect()).transpose()
+    }
+
+    /// A list of lists of three finite numbers.
+    pub(super) fn triples(&self, key: &str, most: usize) -> Result<Option<Vec<[f64; 3]>>, SceneError> {
+        let to_triple = |item: &Spanned<DeValue>| self.to_triple(key, item.get_ref());
+        self.array(key, most)?.map(|array| array.iter().map(to_triple).collect()).transpose()
+    }
+
+    fn array(&self, key: &str, most: usize) -> Result<Option<&'a DeArray<'a>>, SceneError> {
+        match self.table.get(key).map(Spanned::get_ref) {
+            None => Ok(None),
+            Some(DeValue::Array(array)) if array.len() <= most => Ok(Some(array)),
+            Some(DeValue::Array(array)) => {
+                Err(self.error(key, format!("has {} elements; at most {most}", array.len())))
+            }
+            Some(other) => self.wrong(key, "a list", other),
+        }
     }
 
     /// Three finite numbers.

@@ -18,7 +18,7 @@ const MAX_INTENSITY: f32 = 1e9;
 /// All lights of a scene file.
 #[derive(Default)]
 pub(super) struct Lights {
-    /// Whether the file has any, so that those of the mesh file stay dark.
+    /// Whether the file speaks of any, so that those of the mesh file stay dark.
     pub(super) any: bool,
     pub(super) lights: Vec<Light>,
     pub(super) environment: Option<Environment>,
@@ -30,7 +30,7 @@ pub(super) fn read_all(root: &Keys, context: &mut Context) -> Result<Lights, Sce
     if tables.len() > MAX_LIGHTS {
         return Err(root.error("light", format!("{} lights; at most {MAX_LIGHTS}", tables.len())));
     }
-    let mut all = Lights { any: !tables.is_empty(), ..Lights::default() };
+    let mut all = Lights { any: root.has("light"), ..Lights::default() };
     for keys in &tables {
         match keys.required("kind", keys.string("kind")?)? {
             "directional" => all.lights.push(directional(keys)?),

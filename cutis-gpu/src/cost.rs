@@ -20,9 +20,10 @@ pub struct Cost {
     pub taps: u64,
 }
 
-/// Reads of textures by one invocation of every entry point but those of vertices, counted in its source: one light, as many Gaussians as skin
-/// has at a size, loops as long as for most texels.
-pub const TAPS: [(&str, u64); 21] = [
+/// Reads of textures by one invocation of every entry point but those of vertices, counted in its source: one light, as many
+/// Gaussians as skin has at a size, loops as long as for most texels.
+pub const TAPS: [(&str, u64); 22] = [
+    ("deform_vertices", 0),
     ("stretch_at_vertices", 0),
     ("unroll", 2),
     ("map_surface", 0),

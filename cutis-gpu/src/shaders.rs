@@ -4,6 +4,8 @@ macro_rules! wgsl {
     ($($file:literal),+ $(,)?) => { concat!($(include_str!($file), "\n"),+) };
 }
 
+/// Pass `deform`.
+pub const DEFORM: &str = wgsl!("lib/mesh.wgsl", "lib/packing.wgsl", "passes/deform.wgsl");
 /// Pass `stretch`.
 pub const STRETCH: &str = wgsl!("lib/mesh.wgsl", "passes/stretch.wgsl");
 /// Pass `atlas`.
@@ -94,7 +96,8 @@ pub const SKY: &str = wgsl!("lib/mesh.wgsl", "lib/camera.wgsl", "lib/environment
 pub const DOWNSAMPLE: &str = wgsl!("passes/downsample.wgsl");
 
 /// All of them by name.
-pub const ALL: [(&str, &str); 15] = [
+pub const ALL: [(&str, &str); 16] = [
+    ("deform", DEFORM),
     ("stretch", STRETCH),
     ("atlas", ATLAS),
     ("shadow", SHADOW),

@@ -10,6 +10,7 @@ use cutis_gpu::passes::shares::ShareGroup;
 use cutis_gpu::passes::transmission::{Slab, Slabs, Smoothing, TEXELS_OF_MARK};
 use cutis_gpu::passes::visibility::Group;
 use cutis_gpu::scene::camera::GpuCamera;
+use cutis_gpu::scene::deformable::{Deformation, GpuInfluence, JointPair, Offset};
 use cutis_gpu::scene::environment::GpuEnvironment;
 use cutis_gpu::scene::geometry::Vertex;
 use cutis_gpu::scene::lights::{GpuLight, NO_MAP};
@@ -42,6 +43,28 @@ macro_rules! same_layout {
         assert_eq!(wgsl, rust, "{}", $name);
         assert_eq!(size, size_of::<$rust>(), "{}", $name);
     }};
+}
+
+#[test]
+fn structs_of_poses_match_wgsl() {
+    same_layout!(
+        Deformation,
+        shaders::DEFORM,
+        "Deformation",
+        [
+            wave_direction,
+            wave_amplitude_mm,
+            wave_travel,
+            wavelength_mm,
+            wave_phase_rad,
+            turned,
+            morphed,
+            pad0
+        ]
+    );
+    same_layout!(Offset, shaders::DEFORM, "Offset", [position_mm, morph_target, normal, pad0, tangent, pad1]);
+    same_layout!(GpuInfluence, shaders::DEFORM, "Influence", [joints, weights]);
+    same_layout!(JointPair, shaders::DEFORM, "JointPair", [rest, posed]);
 }
 
 #[test]

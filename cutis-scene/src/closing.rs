@@ -135,6 +135,7 @@ fn cap(mesh: &mut Mesh, hole: &[u32]) {
     // Computed again for the whole mesh, displacements left behind.
     mesh.tangents.clear();
     mesh.morph_targets.clear();
+    mesh.skeleton = None;
 }
 
 #[cfg(test)]

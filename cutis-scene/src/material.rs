@@ -104,15 +104,20 @@ impl ColourMap {
 }
 
 impl Material {
+    /// Its maps, by the keys that name them in a scene file.
+    pub fn maps(&self) -> [(&'static str, Option<&Arc<Texture>>); 4] {
+        [
+            ("albedo", self.albedo.texture.as_ref()),
+            ("normal", self.normal.as_ref().map(|map| &map.texture)),
+            ("specular", self.rho_s.texture.as_ref().map(|(map, _)| map)),
+            ("roughness", self.roughness.texture.as_ref().map(|(map, _)| map)),
+        ]
+    }
+
     /// Width or height of the largest of its maps, texels; 0 without any.
     pub fn largest_map(&self) -> u32 {
-        let maps = [
-            self.albedo.texture.as_ref(),
-            self.normal.as_ref().map(|map| &map.texture),
-            self.rho_s.texture.as_ref().map(|(map, _)| map),
-            self.roughness.texture.as_ref().map(|(map, _)| map),
-        ];
-        maps.into_iter().flatten().map(|map| map.width().max(map.height())).max().unwrap_or(0)
+        let maps = self.maps().into_iter().filter_map(|(_, map)| map);
+        maps.map(|map| map.width().max(map.height())).max().unwrap_or(0)
     }
 
     /// What the absorbing film leaves of light that falls in: `albedo^albedo_mix`.

@@ -1,5 +1,6 @@
 //! A triangle mesh as it came from its file: split vertices, millimetres, one UV set.
 
+use crate::Skeleton;
 use glam::{Vec2, Vec3, Vec4};
 
 /// Triangles over vertices. A vertex is one combination of position, normal and UV; points that share a position
@@ -18,6 +19,8 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// Displacements that a file offers for this mesh.
     pub morph_targets: Vec<MorphTarget>,
+    /// Joints that move it.
+    pub skeleton: Option<Skeleton>,
 }
 
 /// One named displacement of every vertex.
@@ -27,8 +30,10 @@ pub struct MorphTarget {
     pub name: String,
     /// Offset of each vertex in mm at weight 1.
     pub position_offsets_mm: Vec<Vec3>,
-    /// Offset of each normal at weight 1; empty where the file has none.
+    /// Offset of each normal at weight 1; where the file has none, [`crate::Object::new`] computes them.
     pub normal_offsets: Vec<Vec3>,
+    /// Offset of each tangent at weight 1; computed by [`crate::Object::new`].
+    pub tangent_offsets: Vec<Vec3>,
     /// Weight the file starts with.
     pub weight: f32,
 }

@@ -1,17 +1,19 @@
 //! A mesh made ready to be drawn: welded, charted, with normals and tangents, and its material.
 
 use crate::charts::Charts;
+use crate::deform::{complete_targets, deformed};
 use crate::tangents::add_tangents;
 use crate::topology::{is_closed, smooth_normals, weld};
-use crate::{Material, Mesh};
+use crate::{Material, Mesh, ObjectSource, Pose};
 use glam::{Vec2, Vec3, Vec4};
+use std::sync::Arc;
 
 /// One surface of the scene with one texture atlas.
 #[derive(Debug, Clone)]
 pub struct Object {
     /// Name for messages.
     pub name: String,
-    /// The mesh; normals and tangents are filled in.
+    /// The mesh in its pose; normals and tangents are filled in.
     pub mesh: Mesh,
     /// Point of the welded surface each vertex belongs to.
     pub point_of_vertex: Vec<u32>,
@@ -21,6 +23,12 @@ pub struct Object {
     pub closed: bool,
     /// What it is made of.
     pub material: Material,
+    /// Where it came from; none if it was made by code.
+    pub source: Option<ObjectSource>,
+    /// The pose of the mesh.
+    pub(crate) pose: Pose,
+    /// The mesh at rest, where it is another.
+    pub(crate) rest: Option<Arc<Mesh>>,
 }
 
 /// The surface at one place of a triangle.
@@ -41,7 +49,8 @@ pub struct SurfacePoint {
 }
 
 impl Object {
-    /// Welds the mesh, finds its charts and computes the normals and tangents it lacks.
+    /// Welds the mesh, finds its charts and computes the normals and tangents it lacks. Morph targets are in by the
+    /// weights their file gives them.
     ///
     /// # Panics
     /// If the mesh breaks its invariants: one UV per vertex, indices in range, finite positions. Readers check these.
@@ -49,19 +58,58 @@ impl Object {
         assert_eq!(mesh.uvs.len(), mesh.positions_mm.len(), "every vertex has texture coordinates");
         if mesh.normals.len() != mesh.positions_mm.len() {
             mesh.normals = smooth_normals(&mesh, &weld(&mesh.positions_mm));
+            // They were offsets from other normals.
+            mesh.morph_targets.iter_mut().for_each(|target| target.normal_offsets.clear());
         }
         if mesh.tangents.len() != mesh.positions_mm.len() {
             add_tangents(&mut mesh);
         }
         let point_of_vertex = weld(&mesh.positions_mm);
-        Self {
+        complete_targets(&mut mesh, &point_of_vertex);
+        let mut object = Self {
             name: name.into(),
             charts: Charts::find(&mesh, &point_of_vertex),
             closed: is_closed(&mesh, &point_of_vertex),
             point_of_vertex,
             mesh,
             material,
+            source: None,
+            pose: Pose::default(),
+            rest: None,
+        };
+        object.set_pose(&Pose::default());
+        object
+    }
+
+    /// The mesh as it was read, with its morph targets and joints.
+    pub fn rest(&self) -> &Mesh {
+        self.rest.as_deref().unwrap_or(&self.mesh)
+    }
+
+    /// How the mesh is deformed.
+    pub fn pose(&self) -> &Pose {
+        &self.pose
+    }
+
+    /// The mesh in a pose; names it does not know are passed over.
+    pub fn deformed(&self, pose: &Pose) -> Mesh {
+        deformed(self.rest(), &pose.on_mesh(self.rest()))
+    }
+
+    /// Puts the mesh into a pose, from rest, whatever pose it has; see [`crate::Scene::set_pose`], which knows all objects.
+    /// Charts and seams stay: no pose moves texture coordinates or tears the surface.
+    pub(crate) fn set_pose(&mut self, pose: &Pose) {
+        self.pose = pose.clone();
+        let on_mesh = pose.on_mesh(self.rest());
+        if on_mesh.is_rest() {
+            if let Some(rest) = self.rest.take() {
+                self.mesh = Arc::unwrap_or_clone(rest);
+            }
+            return;
         }
+        let posed = deformed(self.rest(), &on_mesh);
+        let before = std::mem::replace(&mut self.mesh, posed);
+        self.rest.get_or_insert_with(|| Arc::new(before));
     }
 
     /// Texture coordinates at barycentric coordinates `(b1, b2)` of a triangle.

@@ -1,7 +1,9 @@
 //! The whole of what is there to be drawn.
 
-use crate::{Camera, Environment, Light, Object};
+use crate::pose::{joint_names, morph_names};
+use crate::{Camera, Environment, Light, Object, Pose, PoseError};
 use glam::Vec3;
+use std::collections::BTreeSet;
 
 /// Objects, lights and the camera; nothing about how they are drawn.
 #[derive(Debug, Clone)]
@@ -24,6 +26,31 @@ impl Scene {
     /// Smallest box around all objects, mm. `None` for an empty scene.
     pub fn bounds_mm(&self) -> Option<[Vec3; 2]> {
         bounds_mm(&self.objects)
+    }
+
+    /// Puts all objects into a pose.
+    ///
+    /// # Errors
+    /// If it names what no object has, or a number makes no sense; nothing moves then.
+    pub fn set_pose(&mut self, pose: &Pose) -> Result<(), PoseError> {
+        pose.check(&self.objects)?;
+        self.objects.iter_mut().for_each(|object| object.set_pose(pose));
+        Ok(())
+    }
+
+    /// The pose that all objects have.
+    pub fn pose(&self) -> Pose {
+        self.objects.first().map(|object| object.pose().clone()).unwrap_or_default()
+    }
+
+    /// Names of all morph targets.
+    pub fn morph_names(&self) -> BTreeSet<&str> {
+        morph_names(&self.objects)
+    }
+
+    /// Names of all joints.
+    pub fn joint_names(&self) -> BTreeSet<&str> {
+        joint_names(&self.objects)
     }
 }
 

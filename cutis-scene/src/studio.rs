@@ -4,7 +4,7 @@
 //! front, to the left and above; a rim light behind, on the other side and at the height of the ears, so that it
 //! shines through one; a soft room around both.
 
-use crate::{Environment, Light, Texels, Texture};
+use crate::{Environment, Light, Texels, Texture, TextureSource};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
@@ -46,7 +46,8 @@ pub fn studio_environment() -> Environment {
         room_radiance(environment.dir(uv), &panels).extend(1.0).to_array()
     };
     let texels = (0..width * height).map(texel).collect();
-    Environment { map: Arc::new(Texture::new(width, height, Texels::LinearF32(texels))), ..environment }
+    let map = Texture::new(width, height, Texels::LinearF32(texels)).with_source(TextureSource::Studio);
+    Environment { map: Arc::new(map), ..environment }
 }
 
 /// Key and rim light for a scene inside a box.

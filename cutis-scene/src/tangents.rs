@@ -46,6 +46,9 @@ fn split(mesh: &mut Mesh, vertex: u32) -> u32 {
             target.normal_offsets.push(offset);
         }
     }
+    if let Some(skeleton) = &mut mesh.skeleton {
+        skeleton.influences.push(skeleton.influences[v]);
+    }
     mesh.positions_mm.len() as u32 - 1
 }
 

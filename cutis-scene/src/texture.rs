@@ -1,5 +1,6 @@
 //! Images on surfaces. Stored as compactly as the file allows, always *read* as linear light.
 
+use crate::TextureSource;
 use glam::{Vec2, Vec4};
 
 /// The stored texels, four channels each, row by row.
@@ -19,6 +20,7 @@ pub struct Texture {
     width: u32,
     height: u32,
     texels: Texels,
+    source: Option<TextureSource>,
 }
 
 impl Texture {
@@ -33,7 +35,17 @@ impl Texture {
         };
         assert!(width > 0 && height > 0, "a texture has at least one texel");
         assert_eq!(count, width as usize * height as usize, "texel count is width times height");
-        Self { width, height, texels }
+        Self { width, height, texels, source: None }
+    }
+
+    /// The same texture, known to come from somewhere.
+    pub(crate) fn with_source(self, source: TextureSource) -> Self {
+        Self { source: Some(source), ..self }
+    }
+
+    /// Where it came from; none if it was made by code or lies in another file.
+    pub fn source(&self) -> Option<&TextureSource> {
+        self.source.as_ref()
     }
 
     /// Width in texels.

@@ -190,7 +190,7 @@ fn morph_targets_come_in_millimetres_with_their_names() {
     glb.json["meshes"][0]["extras"] = json!({ "targetNames": ["smile"] });
     let path = write(folder.path(), "morph.glb", glb.bytes());
     let scene = read_scene(&path, &ReadOptions::default()).unwrap();
-    let morph = &scene.objects[0].mesh.morph_targets[0];
+    let morph = &scene.objects[0].rest().morph_targets[0];
     assert_eq!((morph.name.as_str(), morph.weight), ("smile", 0.5));
     assert_eq!(morph.position_offsets_mm.len(), 4);
     assert!((morph.position_offsets_mm[3] - Vec3::Z * 10.0).length() < 1e-4);

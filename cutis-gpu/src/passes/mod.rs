@@ -2,6 +2,7 @@
 //! once and run in every frame.
 
 pub mod atlas;
+pub mod deform;
 pub mod diffusion;
 pub mod downsample;
 pub mod gather;
@@ -30,6 +31,8 @@ pub const LIGHTS_TOGETHER: usize = 4;
 pub struct Passes {
     /// How textures are read.
     pub samplers: Samplers,
+    /// Pass `deform`.
+    pub deform: deform::DeformPass,
     /// Pass `stretch`.
     pub stretch: stretch::StretchPass,
     /// Pass `atlas`.
@@ -59,6 +62,7 @@ impl Passes {
     pub fn new(gpu: &Gpu) -> Self {
         Self {
             samplers: Samplers::new(gpu),
+            deform: deform::DeformPass::new(gpu),
             stretch: stretch::StretchPass::new(gpu),
             atlas: atlas::AtlasPass::new(gpu),
             shadow: shadow::ShadowPass::new(gpu),

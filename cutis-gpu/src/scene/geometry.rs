@@ -63,7 +63,7 @@ impl Geometry {
     }
 }
 
-fn vertex(mesh: &Mesh, v: usize) -> Vertex {
+pub(super) fn vertex(mesh: &Mesh, v: usize) -> Vertex {
     let uv = mesh.uvs[v];
     Vertex {
         position_mm: mesh.positions_mm[v].to_array(),
@@ -74,7 +74,7 @@ fn vertex(mesh: &Mesh, v: usize) -> Vertex {
     }
 }
 
-fn check_size(gpu: &Gpu, bytes: usize) -> Result<(), GpuError> {
+pub(super) fn check_size(gpu: &Gpu, bytes: usize) -> Result<(), GpuError> {
     let limit = gpu.device.limits().max_storage_buffer_binding_size;
     if bytes as u64 > limit {
         return Err(GpuError::TooLarge { what: "the mesh", size: format!("{bytes} bytes"), limit });

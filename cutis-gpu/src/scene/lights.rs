@@ -58,10 +58,17 @@ pub struct GpuLight {
 impl GpuLight {
     /// A light over some objects, whose map is layer `layer`. The map is left out if the light stands among them.
     pub fn new(light: &Light, objects: &[Object], layer: Option<u32>) -> Self {
+        let positions = objects.iter().flat_map(|object| object.mesh.positions_mm.iter().copied());
+        Self::over_points(light, positions, layer)
+    }
+
+    /// A light whose map shows some points.
+    pub fn over_points(light: &Light, shown: impl Iterator<Item = Vec3> + Clone, layer: Option<u32>) -> Self {
         let mut gpu = without_map(light);
         let Some(layer) = layer else { return gpu };
-        let points = || objects.iter().flat_map(|object| object.mesh.positions_mm.iter().copied());
-        let Some(centre) = centre_mm(objects) else { return gpu };
+        let points = || shown.clone();
+        let Some([lo, hi]) = bounds_mm(points()) else { return gpu };
+        let centre = 0.5 * (lo + hi);
         let directional = matches!(light, Light::Directional { .. });
         let origin = if directional { centre } else { Vec3::from_array(gpu.position_mm) };
         let forward = match light {
@@ -150,9 +157,9 @@ fn aimed(guess: Vec3, points: impl Iterator<Item = Vec3> + Clone) -> Vec3 {
     forward
 }
 
-fn centre_mm(objects: &[Object]) -> Option<Vec3> {
-    let boxes = objects.iter().filter_map(|object| object.mesh.bounds_mm());
-    boxes.reduce(|[lo, hi], [l, h]| [lo.min(l), hi.max(h)]).map(|[lo, hi]| 0.5 * (lo + hi))
+/// Smallest box around some points, mm.
+pub(super) fn bounds_mm(points: impl Iterator<Item = Vec3>) -> Option<[Vec3; 2]> {
+    points.map(|p| [p, p]).reduce(|[lo, hi], [l, h]| [lo.min(l), hi.max(h)])
 }
 
 #[cfg(test)]

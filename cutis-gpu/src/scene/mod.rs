@@ -2,6 +2,7 @@
 
 pub mod camera;
 pub mod charts;
+pub mod deformable;
 pub mod environment;
 pub mod geometry;
 pub mod layers;
@@ -9,6 +10,8 @@ pub mod lights;
 pub mod material;
 pub mod object;
 mod picture;
+pub mod posing;
+pub mod reach;
 pub mod shared;
 
 use crate::cost::Cost;
@@ -19,15 +22,15 @@ use crate::step::Step;
 use crate::timing::Timing;
 use crate::{Gpu, GpuError};
 use bytemuck::Zeroable;
-use camera::GpuCamera;
 use cutis_render::passes::ambient::Ambient;
 use cutis_render::prepare::FilteredEnvironment;
 use cutis_render::technique::texture_space::{atlas_sizes, chosen_kernel};
 use cutis_render::{PassTime, Progress, RenderError, Settings};
-use cutis_scene::{Bvh, Camera, Scene};
-use glam::{Vec3, Vec4};
+use cutis_scene::{Bvh, Camera, Pose, PoseError, Scene};
+use glam::Vec4;
 use object::{ObjectMaps, ObjectSteps, Prepared};
 use picture::Picture;
+use posing::Posing;
 use shared::Shared;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -40,7 +43,8 @@ pub struct GpuScene {
     pub shared: Shared,
     /// What it is drawn on.
     picture: Picture,
-    bounds_mm: [Vec3; 2],
+    /// What deforms the objects, and where the camera stands.
+    posing: Posing,
     background: wgpu::Color,
     /// What has to be done when the geometry has changed.
     surface_steps: Vec<Step>,
@@ -85,7 +89,7 @@ impl GpuScene {
             picture: Picture::new(gpu, settings)?,
             shared,
             objects: Vec::new(),
-            bounds_mm: scene.bounds_mm().unwrap_or([Vec3::ZERO; 2]),
+            posing: Posing::new(gpu, scene)?,
             background: background(scene),
             surface_steps: Vec::new(),
             light_steps: Vec::new(),
@@ -123,6 +127,7 @@ impl GpuScene {
             };
             let (maps, more) =
                 ObjectMaps::new(gpu, passes, &self.shared, number, object, prepared, &ambient)?;
+            self.surface_steps.push(passes.deform.step(gpu, self.posing.deformable(number), &maps.geometry));
             self.objects.push(maps);
             steps.push(more);
         }
@@ -161,8 +166,21 @@ impl GpuScene {
 
     /// Moves the camera.
     pub fn set_camera(&self, gpu: &Gpu, camera: &Camera) {
-        let numbers = GpuCamera::new(camera, self.bounds_mm, self.picture.aspect());
-        gpu.queue.write_buffer(&self.shared.camera, 0, bytemuck::bytes_of(&numbers));
+        let aspect = self.picture.aspect();
+        self.posing.set_camera(gpu, &self.shared, camera, aspect);
+    }
+
+    /// Deforms all objects from rest into a pose, from the next frame on; `scene` is the one this was made from.
+    /// Stretch, the unrolled surface, the taps of the blurs and the lights' maps follow; openness does not.
+    ///
+    /// # Errors
+    /// If it names what no object has, or a number makes no sense; nothing moves then.
+    pub fn set_pose(&self, gpu: &Gpu, scene: &Scene, pose: &Pose) -> Result<(), PoseError> {
+        pose.check(&scene.objects)?;
+        let aspect = self.picture.aspect();
+        self.posing.set_pose(gpu, &self.shared, scene, pose, aspect);
+        self.changed.store(true, Ordering::Relaxed);
+        Ok(())
     }
 
     /// The steps of a frame while the geometry stays.

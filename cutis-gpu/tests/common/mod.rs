@@ -32,17 +32,23 @@ pub fn renderer(test: &str) -> Option<&'static GpuRenderer> {
     }
 }
 
-/// The scanned head by the project's own scene file, or `None` with a line on stderr; `CUTIS_REQUIRE_ASSETS=1` forbids that.
-pub fn scanned_head(test: &str) -> Option<Scene> {
+/// The folder of shared assets, or `None` with a line on stderr; `CUTIS_REQUIRE_ASSETS=1` forbids that.
+pub fn assets(test: &str) -> Option<PathBuf> {
     let given = std::env::var_os("CUTIS_ASSETS").map(PathBuf::from);
     let usual = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/assets");
     let folder = given.unwrap_or_else(usual);
-    if !folder.is_dir() {
-        let why = format!("the assets folder {} does not exist; set CUTIS_ASSETS", folder.display());
-        assert!(std::env::var_os("CUTIS_REQUIRE_ASSETS").is_none_or(|v| v != "1"), "{test}: {why}");
-        eprintln!("SKIPPED: {test}: {why}");
-        return None;
+    if folder.is_dir() {
+        return Some(folder);
     }
+    let why = format!("the assets folder {} does not exist; set CUTIS_ASSETS", folder.display());
+    assert!(std::env::var_os("CUTIS_REQUIRE_ASSETS").is_none_or(|v| v != "1"), "{test}: {why}");
+    eprintln!("SKIPPED: {test}: {why}");
+    None
+}
+
+/// The scanned head by the project's own scene file, where the assets are.
+pub fn scanned_head(test: &str) -> Option<Scene> {
+    let folder = assets(test)?;
     let options = ReadOptions { assets_folder: Some(folder), ..ReadOptions::default() };
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/lee_perry_smith.toml");
     Some(read_scene(&file, &options).expect("the scene of the scan is valid"))

@@ -24,6 +24,15 @@ pub const PLACES: Tolerance = tolerance(1e-4, 0.0);
 pub const NORMALS: Tolerance = tolerance(1e-4, 1e-4);
 /// Stretch.
 pub const STRETCH: Tolerance = tolerance(6e-4, 1e-4);
+/// Places of deformed vertices, mm: coordinates of 200 mm have steps of 1.5e-5 mm, and a few are added; sines of the
+/// device err by 1e-6 of an amplitude of 10 mm.
+pub const DEFORMED_MM: f32 = 4e-4;
+/// Normals and tangents of deformed vertices, as lengths of differences.
+pub const DEFORMED_DIRECTIONS: f32 = 2e-5;
+/// Picture of the built-in head with a wave through it.
+pub const WAVED_HEAD: Tolerance = tolerance(0.065, 0.03);
+/// Picture of a hand whose fingers are bent.
+pub const BENT_HAND: Tolerance = tolerance(0.065, 0.03);
 /// Irradiance of an unhidden patch.
 pub const IRRADIANCE: Tolerance = tolerance(6e-4, 1e-4);
 /// Fraction of sharp lights that is seen, on the head.

@@ -30,10 +30,11 @@ mod tests;
 mod texels;
 mod unwrap;
 
-use crate::{Material, Mesh, Object};
+use crate::{Material, Mesh, MeshOrigin, Object, ObjectSource};
 use glam::Vec3;
 use rayon::prelude::*;
 use sculpture::Sculpture;
+use std::sync::Arc;
 use unwrap::Unwrapped;
 
 /// How fine the built-in head is.
@@ -63,6 +64,8 @@ pub fn built_in(detail: HeadDetail) -> Object {
     let surface = surface(&sculpture, detail.triangles);
     let mut head = Object::new("head", mesh(&surface, &sculpture), Material::default());
     head.material = skin_maps::material(&head, &sculpture, detail.map_size);
+    let origin = Arc::new(MeshOrigin::BuiltInHead(detail));
+    head.source = Some(ObjectSource { origin, number: 0, count: 1, own_material: head.material.clone() });
     head
 }
 

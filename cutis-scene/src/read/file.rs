@@ -74,7 +74,7 @@ pub(crate) fn asset(name: &str) -> Result<PathBuf, String> {
 }
 
 /// The shelf: as given, as the environment says, or at its usual place.
-fn assets_folder(given: Option<&Path>) -> Result<PathBuf, String> {
+pub(crate) fn assets_folder(given: Option<&Path>) -> Result<PathBuf, String> {
     if let Some(folder) = given {
         return Ok(folder.to_owned());
     }

@@ -3,14 +3,16 @@
 use super::checks::{MAX_COUNT, check_mesh, warn_about_charts, wrap_charts};
 use super::file::resolve_for_user;
 use super::image::ColourSpace;
+use super::scene_file::PoseKeys;
 use super::textures::Textures;
 use super::{CameraChoice, Parts, Piece, ReadOptions};
 use crate::error::one_line;
 use crate::scene::bounds_mm;
 use crate::studio::{STUDIO_BACKGROUND, studio_environment, studio_lights};
-use crate::{Camera, ColourMap, NormalMap, NormalSpace, Object, ScalarMap, Scene, SceneError};
+use crate::{Camera, ColourMap, NormalMap, NormalSpace, Object, ObjectSource, ScalarMap, Scene, SceneError};
 use glam::Vec3;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Field of view of a camera that nobody described, rad: 25°, a portrait lens.
 pub(super) const DEFAULT_FOV_RAD: f32 = 0.436_332_3;
@@ -28,9 +30,14 @@ pub(super) fn finish(mut parts: Parts, file: &Path, options: &ReadOptions) -> Re
         return Err(SceneError::new(file, "whole scene", reason));
     }
     let mut warnings = parts.warnings;
-    let mut objects = Vec::with_capacity(parts.pieces.len());
-    for piece in parts.pieces {
-        objects.push(to_object(piece, file, &mut warnings)?);
+    let count = parts.pieces.len();
+    let origin = parts.origin.map(Arc::new);
+    let mut objects = Vec::with_capacity(count);
+    for (number, piece) in parts.pieces.into_iter().enumerate() {
+        let own_material = piece.own_material.clone();
+        let mut object = to_object(piece, file, &mut warnings)?;
+        object.source = origin.clone().map(|origin| ObjectSource { origin, number, count, own_material });
+        objects.push(object);
     }
     let Some(bounds_mm) = bounds_mm(&objects) else {
         return Err(SceneError::new(file, "whole scene", "there is no mesh to look at"));
@@ -39,7 +46,13 @@ pub(super) fn finish(mut parts: Parts, file: &Path, options: &ReadOptions) -> Re
     let (lights, environment) = (parts.lights, parts.environment);
     let mut scene = Scene { objects, lights, environment, camera, background: parts.background, warnings };
     warn_about_size(bounds_mm, &mut scene.warnings);
-    light_if_dark(&mut scene, bounds_mm);
+    if !parts.dark {
+        light_if_dark(&mut scene, bounds_mm);
+    }
+    // Last, so that a camera and lights that nobody placed stand still while the scene moves.
+    if let Some(PoseKeys { pose, place }) = parts.pose {
+        scene.set_pose(&pose).map_err(|error| SceneError::new(file, place, error.to_string()))?;
+    }
     scene.warnings = scene.warnings.iter().map(|text| one_line(text)).collect();
     Ok(scene)
 }

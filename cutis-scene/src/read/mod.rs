@@ -12,10 +12,11 @@ mod obj;
 mod scene_file;
 mod textures;
 
-use crate::{Camera, Environment, Light, Material, Mesh, Scene, SceneError};
+use crate::{Camera, Environment, Light, Material, Mesh, MeshOrigin, Scene, SceneError};
 use std::path::{Path, PathBuf};
 
-pub(crate) use file::asset;
+pub(crate) use file::{asset, assets_folder, read_bytes};
+pub(crate) use gltf::neighbours::gltf_neighbours;
 pub use image::{ColourSpace, PictureFile, read_image, read_picture};
 
 /// What the caller knows better than the file, mostly from the command line.
@@ -36,6 +37,9 @@ pub struct ReadOptions {
     pub assets_folder: Option<PathBuf>,
 }
 
+/// Before the place of an image in the material that the mesh itself brings.
+pub(crate) const MESH_PREFIX: &str = "mesh:";
+
 /// Reads a scene by the extension of its file: `.toml`, `.obj`, `.gltf` or `.glb`. The path may begin with `assets:`.
 ///
 /// Files that a scene or glTF file names must lie in its own folder (or under `assets:` in a scene file); the paths
@@ -53,10 +57,15 @@ pub fn read_scene(path: &Path, options: &ReadOptions) -> Result<Scene, SceneErro
 #[derive(Default)]
 struct Parts {
     pieces: Vec<Piece>,
+    /// Where all pieces came from.
+    origin: Option<MeshOrigin>,
     lights: Vec<Light>,
     environment: Option<Environment>,
+    /// Whether a scene without light is meant to have none.
+    dark: bool,
     camera: CameraChoice,
     background: Option<glam::Vec3>,
+    pose: Option<scene_file::PoseKeys>,
     warnings: Vec<String>,
 }
 
@@ -78,7 +87,10 @@ struct Piece {
     /// Where in the file it stands, for messages.
     place: String,
     mesh: Mesh,
+    /// What it is made of in the end.
     material: Material,
+    /// What it is made of by its own file.
+    own_material: Material,
 }
 
 /// Reads the objects, and what else the format has, of a mesh file.
@@ -89,14 +101,17 @@ fn read_mesh_file(path: &Path, options: &ReadOptions) -> Result<Parts, SceneErro
         return Err(SceneError::new(path, "millimetres_per_unit", format!("must be above 0, got {mm}")));
     }
     let extension = extension(path);
-    match extension.as_str() {
-        "obj" => obj::read(&file::read_bytes(path, "whole file")?, path, options),
-        "gltf" | "glb" => gltf::read(&file::read_bytes(path, "whole file")?, path, options),
+    let mut parts = match extension.as_str() {
+        "obj" => obj::read(&file::read_bytes(path, "whole file")?, path, options)?,
+        "gltf" | "glb" => gltf::read(&file::read_bytes(path, "whole file")?, path, options)?,
         other => {
             let reason = format!("`.{other}` is not known; .toml, .obj, .gltf and .glb are");
-            Err(SceneError::new(path, "file name", reason))
+            return Err(SceneError::new(path, "file name", reason));
         }
-    }
+    };
+    let ReadOptions { millimetres_per_unit, flip_v, .. } = *options;
+    parts.origin = Some(MeshOrigin::File { path: path.to_owned(), millimetres_per_unit, flip_v });
+    Ok(parts)
 }
 
 fn extension(path: &Path) -> String {

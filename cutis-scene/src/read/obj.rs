@@ -272,7 +272,13 @@ impl<'a> Parser<'a> {
                     mesh.normals.clear();
                 }
                 let name = if name.is_empty() { stem.clone() } else { name };
-                Piece { place: format!("object `{name}`"), name, mesh, material: Material::default() }
+                Piece {
+                    place: format!("object `{name}`"),
+                    name,
+                    mesh,
+                    material: Material::default(),
+                    own_material: Material::default(),
+                }
             })
             .collect())
     }

@@ -3,7 +3,7 @@
 use super::file::read_bytes;
 use super::image::{ColourSpace, decode};
 use crate::error::one_line;
-use crate::{SceneError, Texels, Texture};
+use crate::{SceneError, Texels, Texture, TextureSource};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -56,7 +56,11 @@ impl Textures {
             return Ok(texture.clone());
         }
         let mut mended = Vec::new();
-        let texture = Arc::new(decode(bytes, space, &mut mended)?);
+        let texture = decode(bytes, space, &mut mended)?;
+        let texture = Arc::new(match &key.0 {
+            Origin::File(path) => texture.with_source(TextureSource::File(path.clone())),
+            Origin::Embedded(_) => texture,
+        });
         warnings.extend(mended.into_iter().map(|text| one_line(&format!("{}: {text}", key.0))));
         self.bytes += size_bytes(&texture);
         if self.bytes > MAX_BYTES {

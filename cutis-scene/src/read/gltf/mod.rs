@@ -1,5 +1,5 @@
-//! glTF 2.0 and GLB: every mesh that the scene's nodes show, with skins at rest, morph targets, materials, punctual
-//! lights and the first perspective camera.
+//! glTF 2.0 and GLB: every mesh that the scene's nodes show, with skins and their joints, morph targets, materials,
+//! punctual lights and the first perspective camera.
 //!
 //! The JSON is read into the types of the `gltf` crate, but nothing else of that crate is used: its validation and
 //! its readers index before they check. Here every index goes through a checked look-up whose error names the place.
@@ -12,8 +12,10 @@ mod accessor;
 mod container;
 mod light;
 mod material;
+pub(super) mod neighbours;
 mod nodes;
 mod primitive;
+mod skeleton;
 mod skin;
 mod text;
 mod uri;

@@ -17,11 +17,11 @@ pub(super) fn world_transforms(document: &Document) -> Result<Vec<Mat4>, SceneEr
     if nodes.len() > MAX_NODES {
         return document.fail("nodes", format!("there are {}; at most {MAX_NODES}", nodes.len()));
     }
-    let has_parent = parents(document)?;
+    let parent_of = parents(document)?;
     let mut world: Vec<Option<Mat4>> = vec![None; nodes.len()];
     let to_mm = Mat4::from_scale(Vec3::splat(document.mm_per_unit));
     // A list instead of recursion: depth costs no stack.
-    let roots = (0..nodes.len()).filter(|&i| !has_parent[i]);
+    let roots = (0..nodes.len()).filter(|&i| parent_of[i].is_none());
     let mut open: Vec<(usize, Mat4, usize)> = roots.map(|i| (i, to_mm, 1)).collect();
     while let Some((index, parent, depth)) = open.pop() {
         if depth > MAX_DEPTH {
@@ -43,26 +43,26 @@ pub(super) fn world_transforms(document: &Document) -> Result<Vec<Mat4>, SceneEr
     }
 }
 
-/// Whether each node has a parent.
-fn parents(document: &Document) -> Result<Vec<bool>, SceneError> {
+/// The parent of each node, if it has one. Refuses nodes with two.
+pub(super) fn parents(document: &Document) -> Result<Vec<Option<usize>>, SceneError> {
     let nodes = &document.root.nodes;
-    let mut has_parent = vec![false; nodes.len()];
+    let mut parent_of = vec![None; nodes.len()];
     for (index, node) in nodes.iter().enumerate() {
         for child in children(node) {
-            match has_parent.get_mut(child) {
+            match parent_of.get_mut(child) {
                 None => {
                     let reason = format!("names node {child}, but there are {}", nodes.len());
                     return document.fail(format!("nodes[{index}].children"), reason);
                 }
-                Some(taken) if *taken => {
+                Some(Some(_)) => {
                     let reason = "has two parents, or is its own ancestor; nodes must form trees";
                     return document.fail(format!("nodes[{child}]"), reason);
                 }
-                Some(taken) => *taken = true,
+                Some(free) => *free = Some(index),
             }
         }
     }
-    Ok(has_parent)
+    Ok(parent_of)
 }
 
 /// The nodes of the scene in the order of the file: parents before children, left to right.
@@ -74,8 +74,8 @@ pub(super) fn shown(document: &Document) -> Result<Vec<usize>, SceneError> {
         }
         (None, Some(first)) => first.nodes.iter().map(|n| n.value()).collect(),
         (None, None) => {
-            let has_parent = parents(document)?;
-            (0..root.nodes.len()).filter(|&i| !has_parent[i]).collect()
+            let parent_of = parents(document)?;
+            (0..root.nodes.len()).filter(|&i| parent_of[i].is_none()).collect()
         }
     };
     open.reverse();

@@ -1,16 +1,19 @@
 //! Primitives: vertices and triangles, brought to the world in mm and gathered into one mesh per material.
 
 use super::accessor::Accept;
-use super::{Document, material, skin};
+use super::skeleton::{self, Bones};
+use super::skin::{self, JointMatrices, Skinned};
+use super::{Document, material};
 use crate::read::Piece;
 use crate::read::checks::MAX_COUNT;
 use crate::read::textures::Textures;
-use crate::{Mesh, MorphTarget, SceneError};
+use crate::skeleton::normal_matrix;
+use crate::{Influence, Joint, Mesh, MorphTarget, SceneError};
 use glam::{Mat3, Mat4, Vec2, Vec3, Vec4};
 use gltf::json::Index;
 use gltf::json::mesh::{Mode, MorphTarget as JsonTarget, Primitive, Semantic};
 use gltf::json::validation::Checked;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Most offsets that all morph targets of an object may hold together.
 const MAX_MORPH_OFFSETS: usize = 50_000_000;
@@ -31,6 +34,18 @@ struct Gathered {
     /// Whether a primitive came without normals or tangents, so that they must be computed for all.
     lacks_normals: bool,
     lacks_tangents: bool,
+    /// Morph targets that some primitive gives without offsets of normals.
+    lacks_normal_offsets: BTreeSet<usize>,
+    /// Number of the first joint of each skin.
+    first_joint: HashMap<usize, usize>,
+}
+
+/// The skin of a node.
+struct Skin {
+    index: usize,
+    matrices: Vec<JointMatrices>,
+    /// None where its joints cannot be turned.
+    bones: Option<Bones>,
 }
 
 /// The matrices of a primitive's vertices.
@@ -62,8 +77,8 @@ impl Gathering {
         let node = &root.nodes[node_index];
         let node_place = format!("nodes[{node_index}]");
         let mesh = document.get(&root.meshes, mesh_index, &format!("{node_place}.mesh"))?;
-        let joints = match node.skin {
-            Some(skin) => Some(skin::joint_matrices(document, world, skin, &format!("{node_place}.skin"))?),
+        let skin = match node.skin {
+            Some(index) => Some(Skin::read(document, world, index, &node_place, warnings)?),
             None => None,
         };
         let weights = node.weights.as_ref().or(mesh.weights.as_ref()).map_or(&[][..], Vec::as_slice);
@@ -79,7 +94,10 @@ impl Gathering {
             }
             let reading = Reading { document, primitive, place, weights, names };
             let count = reading.vertex_count()?;
-            let placement = reading.placement(world[node_index], joints.as_deref(), count)?;
+            let skinned = match &skin {
+                Some(skin) => reading.skinned(&skin.matrices, count, warnings)?,
+                None => None,
+            };
             let key = primitive.material.map_or(usize::MAX, |m| m.value());
             let gathered = self.by_material.entry(key).or_insert_with(|| Gathered {
                 name: mesh.name.clone().or_else(|| node.name.clone()).unwrap_or(node_place.clone()),
@@ -87,7 +105,12 @@ impl Gathering {
                 ..Gathered::default()
             });
             let before = (gathered.mesh.positions_mm.len(), gathered.mesh.triangles.len());
+            let (placement, influences) = match skinned {
+                Some(Skinned { matrices, influences }) => (Placement::PerVertex(matrices), influences),
+                None => (Placement::One(world[node_index]), Vec::new()),
+            };
             reading.append(gathered, mode, &placement)?;
+            gathered.follow(before.0, skin.as_ref(), influences, &reading.place, warnings);
             self.vertices += gathered.mesh.positions_mm.len() - before.0;
             self.triangles += gathered.mesh.triangles.len() - before.1;
             if self.vertices > MAX_COUNT || self.triangles > MAX_COUNT {
@@ -113,6 +136,9 @@ impl Gathering {
             if gathered.lacks_normals {
                 gathered.mesh.normals.clear();
             }
+            for slot in gathered.lacks_normal_offsets {
+                gathered.mesh.morph_targets[slot].normal_offsets.clear();
+            }
             // Tangents of a file belong to its own v direction.
             if gathered.lacks_tangents || document.flip_v {
                 gathered.mesh.tangents.clear();
@@ -120,10 +146,69 @@ impl Gathering {
             let material = material::read(document, key, textures, warnings)?;
             let Gathered { name, place, mut mesh, .. } = gathered;
             material.uv_transform.apply(&mut mesh);
-            pieces.push(Piece { name, place, mesh, material: material.material });
+            let material = material.material;
+            pieces.push(Piece { name, place, mesh, own_material: material.clone(), material });
         }
         Ok(pieces)
     }
+}
+
+impl Skin {
+    fn read(
+        document: &Document,
+        world: &[Mat4],
+        index: Index<gltf::json::Skin>,
+        node_place: &str,
+        warnings: &mut Vec<String>,
+    ) -> Result<Self, SceneError> {
+        let matrices = skin::joint_matrices(document, world, index, &format!("{node_place}.skin"))?;
+        let bones = skeleton::read(document, world, index, &matrices)?;
+        let bones = bones.inspect_err(|why| {
+            warnings.push(format!("skins[{}]: no pose turns its joints: {why}", index.value()));
+        });
+        Ok(Self { index: index.value(), matrices, bones: bones.ok() })
+    }
+}
+
+impl Gathered {
+    /// Notes what the vertices from number `base` on follow.
+    fn follow(
+        &mut self,
+        base: usize,
+        skin: Option<&Skin>,
+        influences: Vec<Influence>,
+        place: &str,
+        warnings: &mut Vec<String>,
+    ) {
+        let count = self.mesh.positions_mm.len();
+        let bones = skin.and_then(|skin| Some((skin.index, skin.bones.as_ref()?)));
+        if let Some((index, bones)) = bones.filter(|_| !influences.is_empty()) {
+            let skeleton = self.mesh.skeleton.get_or_insert_default();
+            let next = skeleton.joints.len();
+            let first = *self.first_joint.entry(index).or_insert(next);
+            if first == next && first + bones.joints.len() > usize::from(u16::MAX) {
+                self.first_joint.remove(&index);
+                warnings.push(format!("{place}: no pose turns its joints: with them there are too many"));
+            } else {
+                if first == next {
+                    skeleton.joints.extend(bones.joints.iter().map(|joint| shifted(joint, first)));
+                }
+                skeleton.influences.resize(base, Influence::default());
+                let renumbered = |joint: u16| bones.number[usize::from(joint)] + first as u16;
+                skeleton.influences.extend(
+                    influences.into_iter().map(|i| Influence { joints: i.joints.map(renumbered), ..i }),
+                );
+            }
+        }
+        if let Some(skeleton) = &mut self.mesh.skeleton {
+            skeleton.influences.resize(count, Influence::default());
+        }
+    }
+}
+
+/// A joint behind `first` others.
+fn shifted(joint: &Joint, first: usize) -> Joint {
+    Joint { parent: joint.parent.map(|parent| parent + first as u16), ..joint.clone() }
 }
 
 /// One primitive while it is read.
@@ -163,12 +248,13 @@ impl Reading<'_> {
         }
     }
 
-    fn placement(&self, node: Mat4, joints: Option<&[Mat4]>, count: usize) -> Result<Placement, SceneError> {
-        let blended = match joints {
-            Some(joints) => skin::vertex_matrices(self.document, self.primitive, joints, count, &self.place)?,
-            None => None,
-        };
-        Ok(blended.map_or(Placement::One(node), Placement::PerVertex))
+    fn skinned(
+        &self,
+        joints: &[JointMatrices],
+        count: usize,
+        warnings: &mut Vec<String>,
+    ) -> Result<Option<Skinned>, SceneError> {
+        skin::skinned(self.document, self.primitive, joints, count, &self.place, warnings)
     }
 
     fn append(&self, gathered: &mut Gathered, mode: Mode, placement: &Placement) -> Result<(), SceneError> {
@@ -194,7 +280,8 @@ impl Reading<'_> {
         mesh.tangents.extend(
             tangents.iter().enumerate().map(|(i, t)| turned_tangent(placement.of(i), Vec4::from_array(*t))),
         );
-        self.append_targets(mesh, base, count, placement)?;
+        self.append_targets(gathered, base, count, placement)?;
+        let mesh = &mut gathered.mesh;
         self.append_triangles(mesh, base, count, mode, placement)
     }
 
@@ -230,12 +317,13 @@ impl Reading<'_> {
 
     fn append_targets(
         &self,
-        mesh: &mut Mesh,
+        gathered: &mut Gathered,
         base: usize,
         count: usize,
         placement: &Placement,
     ) -> Result<(), SceneError> {
         let targets = self.primitive.targets.as_deref().unwrap_or_default();
+        let mesh = &mut gathered.mesh;
         let slots = mesh.morph_targets.len().max(targets.len());
         if slots.saturating_mul(base + count) > MAX_MORPH_OFFSETS {
             return self.fail(format!("{slots} morph targets of {} vertices are too many", base + count));
@@ -253,6 +341,9 @@ impl Reading<'_> {
             morph.position_offsets_mm.resize(base, Vec3::ZERO);
             morph.normal_offsets.resize(base, Vec3::ZERO);
             if let Some(target) = targets.get(slot) {
+                if target.positions.is_some() && target.normals.is_none() {
+                    gathered.lacks_normal_offsets.insert(slot);
+                }
                 self.append_target(morph, target, count, placement, slot)?;
             }
             morph.position_offsets_mm.resize(base + count, Vec3::ZERO);
@@ -279,7 +370,7 @@ impl Reading<'_> {
             morph.position_offsets_mm.extend(self.offsets(offsets, count, placement, &place, to_world)?);
         }
         if let Some(offsets) = normals {
-            let to_world = |matrix, offset| normal_matrix(matrix) * offset;
+            let to_world = |matrix, offset| normal_matrix(Mat3::from_mat4(matrix)) * offset;
             morph.normal_offsets.extend(self.offsets(offsets, count, placement, &place, to_world)?);
         }
         Ok(())
@@ -347,17 +438,8 @@ fn triangles(mode: Mode, indices: &[u32]) -> Box<dyn Iterator<Item = [u32; 3]> +
     }
 }
 
-/// Matrix for normals: the inverse transpose up to a positive factor, as cofactors, which need no division.
-fn normal_matrix(matrix: Mat4) -> Mat3 {
-    let m = Mat3::from_mat4(matrix);
-    // Scaled to size one, so that products of three lengths in mm cannot overflow.
-    let m = m * m.to_cols_array().iter().fold(f32::MIN_POSITIVE, |a, b| a.max(b.abs())).recip();
-    let sign = if m.determinant() < 0.0 { -1.0 } else { 1.0 };
-    Mat3::from_cols(m.y_axis.cross(m.z_axis), m.z_axis.cross(m.x_axis), m.x_axis.cross(m.y_axis)) * sign
-}
-
 fn turned_normal(matrix: Mat4, normal: Vec3) -> Vec3 {
-    (normal_matrix(matrix) * normal).normalize_or_zero()
+    (normal_matrix(Mat3::from_mat4(matrix)) * normal).normalize_or_zero()
 }
 
 fn turned_tangent(matrix: Mat4, tangent: Vec4) -> Vec4 {

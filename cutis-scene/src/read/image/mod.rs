@@ -11,7 +11,7 @@ pub use picture::{PictureFile, read_picture};
 
 use super::file::read_bytes;
 use crate::texture::srgb_to_linear;
-use crate::{SceneError, Texels, Texture};
+use crate::{SceneError, Texels, Texture, TextureSource};
 use ::image::codecs::hdr::HdrDecoder;
 use ::image::codecs::jpeg::JpegDecoder;
 use ::image::codecs::png::PngDecoder;
@@ -46,6 +46,7 @@ pub fn read_image(
     warnings: &mut Vec<String>,
 ) -> Result<Texture, SceneError> {
     decode(&read_bytes(path, "image")?, space, warnings)
+        .map(|texture| texture.with_source(TextureSource::File(path.to_owned())))
         .map_err(|reason| SceneError::new(path, "image", reason))
 }
 

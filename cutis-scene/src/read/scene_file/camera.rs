@@ -15,6 +15,7 @@ pub(in crate::read) struct CameraKeys {
     yaw_rad: f32,
     /// Positive lifts the camera.
     pitch_rad: f32,
+    up: Option<Vec3>,
     vertical_fov_rad: Option<f32>,
     exposure_ev: f32,
     /// Radiance behind the scene, W/(m² sr).
@@ -29,6 +30,7 @@ pub(super) fn read(keys: &Keys) -> Result<CameraKeys, SceneError> {
         "distance_mm",
         "yaw_degrees",
         "pitch_degrees",
+        "up",
         "vertical_fov_degrees",
         "exposure_ev",
         "background",
@@ -45,15 +47,15 @@ pub(super) fn read(keys: &Keys) -> Result<CameraKeys, SceneError> {
     if position_mm.is_some() && position_mm == look_at_mm {
         return Err(keys.error("position_mm", "is the point the camera looks at"));
     }
-    let degrees = |key, limits| Ok::<_, SceneError>(keys.number_in(key, limits)?.map(f32::to_radians));
     Ok(CameraKeys {
         look_at_mm,
         position_mm,
         distance_mm: keys.number_in("distance_mm", f32::MIN_POSITIVE..=1e7)?,
-        yaw_rad: degrees("yaw_degrees", -360.0..=360.0)?.unwrap_or(0.0),
+        yaw_rad: keys.radians("yaw_degrees", -360.0..=360.0)?.unwrap_or(0.0),
         // Straight above or below, up has no direction.
-        pitch_rad: degrees("pitch_degrees", -89.0..=89.0)?.unwrap_or(0.0),
-        vertical_fov_rad: degrees("vertical_fov_degrees", 0.1..=170.0)?,
+        pitch_rad: keys.radians("pitch_degrees", -89.0..=89.0)?.unwrap_or(0.0),
+        up: keys.direction("up")?,
+        vertical_fov_rad: keys.radians("vertical_fov_degrees", 0.1..=170.0)?,
         exposure_ev: keys.number_in("exposure_ev", -32.0..=32.0)?.unwrap_or(0.0),
         background: keys.vector_in("background", 0.0..=1e6)?,
     })
@@ -74,7 +76,8 @@ impl CameraKeys {
         let framing_distance_mm = framing.position_mm.distance(framing.look_at_mm);
         let distance_mm = self.distance_mm.unwrap_or(framing_distance_mm);
         let position_mm = self.position_mm.unwrap_or(look_at_mm + dir * distance_mm);
-        Camera { position_mm, look_at_mm, exposure_ev: self.exposure_ev, ..framing }
+        let up = self.up.unwrap_or(framing.up);
+        Camera { position_mm, look_at_mm, up, exposure_ev: self.exposure_ev, ..framing }
     }
 }
 

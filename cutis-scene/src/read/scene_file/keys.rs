@@ -5,7 +5,7 @@ use glam::Vec3;
 use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue};
 
 /// The text of a scene file.
 #[derive(Clone, Copy)]
@@ -42,6 +42,16 @@ impl<'a> Keys<'a> {
         let start = self.table.get(key).map_or(self.span.start, |value| value.span().start);
         let place = format!("line {}, key `{}`", self.source.line(start), self.full(key));
         SceneError::new(self.source.file, place, reason)
+    }
+
+    /// Where the table stands, for errors that are found later.
+    pub(super) fn place(&self) -> String {
+        format!("line {}, key `{}`", self.source.line(self.span.start), self.name)
+    }
+
+    /// All keys, whatever they are.
+    pub(super) fn names(&self) -> impl Iterator<Item = &'a str> {
+        self.table.iter().map(|(key, _)| key.get_ref().as_ref())
     }
 
     fn full(&self, key: &str) -> String {
@@ -142,6 +152,13 @@ impl<'a> Keys<'a> {
         Ok(Some(number))
     }
 
+    /// An angle that is written in degrees, within limits in degrees.
+    pub(super) fn radians(&self, key: &str, limits: RangeInclusive<f32>) -> Result<Option<f32>, SceneError> {
+        self.number_in(key, limits)?;
+        // In double precision, so that every angle of single precision has degrees that mean it.
+        Ok(self.double(key)?.map(|degrees| degrees.to_radians() as f32))
+    }
+
     fn check(&self, key: &str, number: f32, limits: &RangeInclusive<f32>) -> Result<(), SceneError> {
         if limits.contains(&number) {
             return Ok(());
@@ -169,9 +186,12 @@ impl<'a> Keys<'a> {
 
     /// Three finite numbers in double precision.
     pub(super) fn triple(&self, key: &str) -> Result<Option<[f64; 3]>, SceneError> {
-        let Some(value) = self.table.get(key) else { return Ok(None) };
-        let DeValue::Array(array) = value.get_ref() else {
-            return self.wrong(key, "a list of three numbers", value.get_ref());
+        self.table.get(key).map(|value| self.to_triple(key, value.get_ref())).transpose()
+    }
+
+    fn to_triple(&self, key: &str, value: &DeValue) -> Result<[f64; 3], SceneError> {
+        let DeValue::Array(array) = value else {
+            return self.wrong(key, "a list of three numbers", value);
         };
         if array.len() != 3 {
             return Err(self.error(key, format!("must be a list of three numbers, found {}", array.len())));
@@ -180,7 +200,30 @@ impl<'a> Keys<'a> {
         for (slot, item) in triple.iter_mut().zip(array.iter()) {
             *slot = self.to_number(key, item.get_ref())?;
         }
-        Ok(Some(triple))
+        Ok(triple)
+    }
+
+    /// A list of finite numbers in double precision.
+    pub(super) fn doubles(&self, key: &str, most: usize) -> Result<Option<Vec<f64>>, SceneError> {
+        let to_number = |item: &Spanned<DeValue>| self.to_number(key, item.get_ref());
+        self.array(key, most)?.map(|array| array.iter().map(to_number).collect()).transpose()
+    }
+
+    /// A list of lists of three finite numbers.
+    pub(super) fn triples(&self, key: &str, most: usize) -> Result<Option<Vec<[f64; 3]>>, SceneError> {
+        let to_triple = |item: &Spanned<DeValue>| self.to_triple(key, item.get_ref());
+        self.array(key, most)?.map(|array| array.iter().map(to_triple).collect()).transpose()
+    }
+
+    fn array(&self, key: &str, most: usize) -> Result<Option<&'a DeArray<'a>>, SceneError> {
+        match self.table.get(key).map(Spanned::get_ref) {
+            None => Ok(None),
+            Some(DeValue::Array(array)) if array.len() <= most => Ok(Some(array)),
+            Some(DeValue::Array(array)) => {
+                Err(self.error(key, format!("has {} elements; at most {most}", array.len())))
+            }
+            Some(other) => self.wrong(key, "a list", other),
+        }
     }
 
     /// Three finite numbers.
@@ -202,6 +245,10 @@ impl<'a> Keys<'a> {
     /// A direction of any length but zero, as a unit vector.
     pub(super) fn direction(&self, key: &str) -> Result<Option<Vec3>, SceneError> {
         let Some(vector) = self.vector(key)? else { return Ok(None) };
+        // A unit vector stays as it is written: to divide it by its rounded length would only move its last digit.
+        if (vector.length_squared() - 1.0).abs() < 4.0 * f32::EPSILON {
+            return Ok(Some(vector));
+        }
         match vector.try_normalize() {
             Some(unit) => Ok(Some(unit)),
             None => Err(self.error(key, "has no direction: it is zero, or too long")),

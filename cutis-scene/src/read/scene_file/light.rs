@@ -6,6 +6,7 @@ use crate::read::image::ColourSpace;
 use crate::studio::studio_environment;
 use crate::{Environment, Light, Projector, SceneError, Texture};
 use glam::Vec3;
+use std::f32::consts::FRAC_PI_4;
 use std::sync::Arc;
 
 /// Most lights of a scene.
@@ -17,7 +18,7 @@ const MAX_INTENSITY: f32 = 1e9;
 /// All lights of a scene file.
 #[derive(Default)]
 pub(super) struct Lights {
-    /// Whether the file has any, so that those of the mesh file stay dark.
+    /// Whether the file speaks of any, so that those of the mesh file stay dark.
     pub(super) any: bool,
     pub(super) lights: Vec<Light>,
     pub(super) environment: Option<Environment>,
@@ -29,7 +30,7 @@ pub(super) fn read_all(root: &Keys, context: &mut Context) -> Result<Lights, Sce
     if tables.len() > MAX_LIGHTS {
         return Err(root.error("light", format!("{} lights; at most {MAX_LIGHTS}", tables.len())));
     }
-    let mut all = Lights { any: !tables.is_empty(), ..Lights::default() };
+    let mut all = Lights { any: root.has("light"), ..Lights::default() };
     for keys in &tables {
         match keys.required("kind", keys.string("kind")?)? {
             "directional" => all.lights.push(directional(keys)?),
@@ -69,11 +70,11 @@ fn radius(keys: &Keys) -> Result<f32, SceneError> {
 /// `direction` is the way the light travels; `intensity` its irradiance in W/m².
 fn directional(keys: &Keys) -> Result<Light, SceneError> {
     keys.only(&["kind", "direction", "colour", "intensity", "angular_radius_degrees"])?;
-    let angular_radius = keys.number_in("angular_radius_degrees", 0.0..=45.0)?.unwrap_or(0.0);
+    let angular_radius = keys.radians("angular_radius_degrees", 0.0..=45.0)?.unwrap_or(0.0);
     Ok(Light::Directional {
         dir_to_light: -keys.required("direction", keys.direction("direction")?)?,
         irradiance_w_per_m2: strength(keys)?,
-        angular_radius_rad: angular_radius.to_radians(),
+        angular_radius_rad: angular_radius,
     })
 }
 
@@ -99,9 +100,10 @@ fn spot(keys: &Keys) -> Result<Light, SceneError> {
         "inner_cone_degrees",
         "outer_cone_degrees",
     ])?;
-    let outer = keys.number_in("outer_cone_degrees", f32::MIN_POSITIVE..=90.0)?.unwrap_or(45.0);
-    let inner = keys.number_in("inner_cone_degrees", 0.0..=90.0)?.unwrap_or(0.0);
+    let outer = keys.radians("outer_cone_degrees", f32::MIN_POSITIVE..=90.0)?.unwrap_or(FRAC_PI_4);
+    let inner = keys.radians("inner_cone_degrees", 0.0..=90.0)?.unwrap_or(0.0);
     if inner >= outer {
+        let [outer, inner] = [outer, inner].map(f32::to_degrees);
         let reason = format!("must be below outer_cone_degrees ({outer}), got {inner}");
         return Err(keys.error("inner_cone_degrees", reason));
     }
@@ -109,8 +111,8 @@ fn spot(keys: &Keys) -> Result<Light, SceneError> {
         position_mm: position(keys)?,
         dir_travel: keys.required("direction", keys.direction("direction")?)?,
         intensity_w_per_sr: strength(keys)?,
-        inner_cone_rad: inner.to_radians(),
-        outer_cone_rad: outer.to_radians(),
+        inner_cone_rad: inner,
+        outer_cone_rad: outer,
         radius_mm: radius(keys)?,
     })
 }
@@ -137,11 +139,12 @@ fn projector(keys: &Keys, context: &mut Context) -> Result<Light, SceneError> {
     ])?;
     let dir_travel = keys.required("direction", keys.direction("direction")?)?;
     let up = keys.direction("up")?.unwrap_or(Vec3::Y);
-    let angle = keys.number_in("vertical_fov_degrees", 0.1..=170.0)?.unwrap_or(30.0);
+    keys.number_in("vertical_fov_degrees", 0.1..=170.0)?;
+    let angle = keys.double("vertical_fov_degrees")?.unwrap_or(30.0);
     Ok(Light::Projector(Projector {
         position_mm: position(keys)?,
         axes: Projector::axes(dir_travel, up),
-        tan_half_height: (0.5 * angle.to_radians()).tan(),
+        tan_half_height: (0.5 * angle.to_radians()).tan() as f32,
         image: image(keys, context)?,
         intensity_w_per_sr: strength(keys)?,
         radius_mm: radius(keys)?,
@@ -151,14 +154,14 @@ fn projector(keys: &Keys, context: &mut Context) -> Result<Light, SceneError> {
 /// A latitude-longitude image, or the studio where no `path` is given. Colour times intensity scales its radiance.
 fn environment(keys: &Keys, context: &mut Context) -> Result<Environment, SceneError> {
     keys.only(&["kind", "path", "rotation_degrees", "colour", "intensity", "visible"])?;
-    let rotation = keys.number_in("rotation_degrees", -360.0..=360.0)?.unwrap_or(0.0);
+    let rotation = keys.radians("rotation_degrees", -360.0..=360.0)?.unwrap_or(0.0);
     let map = match keys.has("path") {
         false => studio_environment().map,
         true => image(keys, context)?,
     };
     Ok(Environment {
         map,
-        rotation_rad: rotation.to_radians(),
+        rotation_rad: rotation,
         radiance_scale: strength(keys)?,
         visible: keys.boolean("visible")?.unwrap_or(false),
     })

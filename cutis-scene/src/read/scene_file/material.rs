@@ -2,15 +2,17 @@
 
 use super::Context;
 use super::keys::Keys;
+use crate::read::MESH_PREFIX;
 use crate::read::image::ColourSpace;
 use crate::{ColourMap, Material, NormalMap, NormalSpace, ScalarMap, Scattering, SceneError, Texture};
-use cutis_optics::Medium;
+use cutis_optics::{Medium, RgbGaussianSum};
 use glam::Vec3;
 use std::sync::Arc;
 
-const KNOWN: [&str; 11] = [
+const KNOWN: [&str; 12] = [
     "preset",
     "medium",
+    "kernel",
     "albedo",
     "albedo_colour",
     "albedo_mix",
@@ -22,13 +24,17 @@ const KNOWN: [&str; 11] = [
     "f0",
 ];
 
+/// Most Gaussians of a kernel.
+const MAX_GAUSSIANS: usize = 64;
+
 /// The parts of a material that a scene file gives.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Change {
     scattering: Option<Scattering>,
     albedo: Option<ColourMap>,
     albedo_mix: Option<f32>,
-    normal: Option<NormalMap>,
+    /// None in it: the surface has no relief.
+    normal: Option<Option<NormalMap>>,
     rho_s: Option<ScalarMap>,
     roughness: Option<ScalarMap>,
     f0: Option<f32>,
@@ -51,9 +57,7 @@ impl Change {
         set(&mut material.rho_s, &self.rho_s);
         set(&mut material.roughness, &self.roughness);
         set(&mut material.f0, &self.f0);
-        if self.normal.is_some() {
-            material.normal = self.normal.clone();
-        }
+        set(&mut material.normal, &self.normal);
     }
 }
 
@@ -69,22 +73,33 @@ fn has_its_own_colour(scattering: &Scattering) -> bool {
     }
 }
 
-/// Reads `[material]`.
-pub(super) fn read(keys: &Keys, context: &mut Context) -> Result<Change, SceneError> {
+/// Reads a material; `own` is what the mesh file makes of the object.
+pub(super) fn read(keys: &Keys, own: &Material, context: &mut Context) -> Result<Change, SceneError> {
     keys.only(&KNOWN)?;
+    let images = &mut Images { own, context };
     Ok(Change {
         scattering: scattering(keys)?,
-        albedo: albedo(keys, context)?,
+        albedo: albedo(keys, images)?,
         albedo_mix: keys.number_in("albedo_mix", 0.0..=1.0)?,
-        normal: normal(keys, context)?,
-        rho_s: scalar(keys, "specular", 0.0..=10.0, ScalarMap::measured_rho_s, context)?,
-        roughness: scalar(keys, "roughness", 0.0..=1.0, ScalarMap::measured_roughness, context)?,
+        normal: normal(keys, images)?,
+        rho_s: scalar(keys, "specular", 0.0..=10.0, ScalarMap::measured_rho_s, images)?,
+        roughness: scalar(keys, "roughness", 0.0..=1.0, ScalarMap::measured_roughness, images)?,
         f0: keys.number_in("f0", 0.0..=1.0)?,
     })
 }
 
 fn scattering(keys: &Keys) -> Result<Option<Scattering>, SceneError> {
     let preset = keys.string("preset")?;
+    if let Some(kernel_keys) = keys.table("kernel")? {
+        for other in ["preset", "medium"] {
+            if keys.has(other) {
+                return Err(
+                    keys.error("kernel", format!("stands beside `{other}`; only one can be the tissue"))
+                );
+            }
+        }
+        return kernel(&kernel_keys).map(Some);
+    }
     match (preset, keys.table("medium")?) {
         (Some(_), Some(_)) => Err(keys.error("medium", "stands beside `preset`; only one can be the tissue")),
         (Some(""), None) => Err(keys.error("preset", "is empty")),
@@ -104,17 +119,43 @@ fn medium(keys: &Keys) -> Result<Scattering, SceneError> {
     };
     let sigma_a = coefficients("sigma_a_per_mm", 0.0)?;
     let sigma_s_reduced = coefficients("sigma_s_reduced_per_mm", f32::MIN_POSITIVE)?;
-    keys.number_in("refractive_index", 1.0..=3.0)?;
-    let index = keys.double("refractive_index")?.unwrap_or(1.4);
+    let index = refractive_index(keys)?;
     Ok(Scattering::Medium([0, 1, 2].map(|i| Medium {
         sigma_a_per_mm: sigma_a[i],
         sigma_s_reduced_per_mm: sigma_s_reduced[i],
-        refractive_index: index,
+        refractive_index: index[i],
     })))
 }
 
+/// One for all channels, or one for each.
+fn refractive_index(keys: &Keys) -> Result<[f64; 3], SceneError> {
+    if keys.kind("refractive_index") == Some("array") {
+        keys.vector_in("refractive_index", 1.0..=3.0)?;
+        return keys.required("refractive_index", keys.triple("refractive_index")?);
+    }
+    keys.number_in("refractive_index", 1.0..=3.0)?;
+    Ok([keys.double("refractive_index")?.unwrap_or(1.4); 3])
+}
+
+/// A finished sum of Gaussians: variances, growing, and the weights of red, green and blue for each.
+fn kernel(keys: &Keys) -> Result<Scattering, SceneError> {
+    keys.only(&["variances_mm2", "weights"])?;
+    let variances_mm2 = keys.required("variances_mm2", keys.doubles("variances_mm2", MAX_GAUSSIANS)?)?;
+    let weights = keys.required("weights", keys.triples("weights", MAX_GAUSSIANS)?)?;
+    if variances_mm2.is_empty() || weights.len() != variances_mm2.len() {
+        let reason = format!("{} weights for {} variances", weights.len(), variances_mm2.len());
+        return Err(keys.error("weights", reason));
+    }
+    // Variance 0 is light that does not spread; 1e6 mm² is a metre.
+    let fit = |&v: &f64| (0.0..=1e6).contains(&v);
+    if !variances_mm2.iter().all(fit) || variances_mm2.windows(2).any(|pair| pair[0] > pair[1]) {
+        return Err(keys.error("variances_mm2", "must grow, from 0 to 1000000 mm²"));
+    }
+    Ok(Scattering::Kernel(RgbGaussianSum { variances_mm2, weights }))
+}
+
 /// `albedo` is a path or a linear colour; `albedo_colour` a factor on it.
-fn albedo(keys: &Keys, context: &mut Context) -> Result<Option<ColourMap>, SceneError> {
+fn albedo(keys: &Keys, images: &mut Images) -> Result<Option<ColourMap>, SceneError> {
     let factor = keys.vector_in("albedo_colour", 0.0..=1.0)?;
     match keys.kind("albedo") {
         None => Ok(factor.map(|factor| ColourMap { factor, texture: None })),
@@ -124,7 +165,7 @@ fn albedo(keys: &Keys, context: &mut Context) -> Result<Option<ColourMap>, Scene
         }
         Some("string") => {
             let text = keys.string("albedo")?.unwrap_or_default();
-            let texture = texture(keys, "albedo", text, ColourSpace::Colour, context)?;
+            let texture = texture(keys, "albedo", text, ColourSpace::Colour, images)?;
             Ok(Some(ColourMap { factor: factor.unwrap_or(Vec3::ONE), texture: Some(texture) }))
         }
         Some(kind) => {
@@ -133,7 +174,8 @@ fn albedo(keys: &Keys, context: &mut Context) -> Result<Option<ColourMap>, Scene
     }
 }
 
-fn normal(keys: &Keys, context: &mut Context) -> Result<Option<NormalMap>, SceneError> {
+/// `normal` is a path, or `false` for a surface without relief.
+fn normal(keys: &Keys, images: &mut Images) -> Result<Option<Option<NormalMap>>, SceneError> {
     let space = match keys.string("normal_space")? {
         None | Some("tangent") => NormalSpace::Tangent,
         Some("object") => NormalSpace::Object,
@@ -142,6 +184,9 @@ fn normal(keys: &Keys, context: &mut Context) -> Result<Option<NormalMap>, Scene
         }
     };
     let strength = keys.number_in("normal_strength", -10.0..=10.0)?.unwrap_or(1.0);
+    if keys.kind("normal") == Some("boolean") && keys.boolean("normal")? == Some(false) {
+        return Ok(Some(None));
+    }
     let Some(text) = keys.string("normal")? else {
         for key in ["normal_space", "normal_strength"] {
             if keys.has(key) {
@@ -150,8 +195,8 @@ fn normal(keys: &Keys, context: &mut Context) -> Result<Option<NormalMap>, Scene
         }
         return Ok(None);
     };
-    let texture = texture(keys, "normal", text, ColourSpace::Data, context)?;
-    Ok(Some(NormalMap { texture, space, strength }))
+    let texture = texture(keys, "normal", text, ColourSpace::Data, images)?;
+    Ok(Some(Some(NormalMap { texture, space, strength })))
 }
 
 /// A number, a path (read as `by_path` says), or `{ path, channel, offset, gain }`.
@@ -160,18 +205,18 @@ fn scalar(
     key: &str,
     limits: std::ops::RangeInclusive<f32>,
     by_path: fn(Arc<Texture>) -> ScalarMap,
-    context: &mut Context,
+    images: &mut Images,
 ) -> Result<Option<ScalarMap>, SceneError> {
     match keys.kind(key) {
         None => Ok(None),
         Some("integer" | "float") => Ok(keys.number_in(key, limits)?.map(ScalarMap::constant)),
         Some("string") => {
             let text = keys.string(key)?.unwrap_or_default();
-            Ok(Some(by_path(texture(keys, key, text, ColourSpace::Data, context)?)))
+            Ok(Some(by_path(texture(keys, key, text, ColourSpace::Data, images)?)))
         }
         Some("table") => {
             let table = keys.required(key, keys.table(key)?)?;
-            scalar_table(&table, context).map(Some)
+            scalar_table(&table, images).map(Some)
         }
         Some(kind) => {
             let reason =
@@ -181,7 +226,7 @@ fn scalar(
     }
 }
 
-fn scalar_table(keys: &Keys, context: &mut Context) -> Result<ScalarMap, SceneError> {
+fn scalar_table(keys: &Keys, images: &mut Images) -> Result<ScalarMap, SceneError> {
     keys.only(&["path", "channel", "offset", "gain"])?;
     let offset = keys.number_in("offset", -10.0..=10.0)?.unwrap_or(0.0);
     let gain = keys.number_in("gain", -10.0..=10.0)?.unwrap_or(1.0);
@@ -196,17 +241,34 @@ fn scalar_table(keys: &Keys, context: &mut Context) -> Result<ScalarMap, SceneEr
         }
     };
     let text = keys.required("path", keys.string("path")?)?;
-    let texture = texture(keys, "path", text, ColourSpace::Data, context)?;
+    let texture = texture(keys, "path", text, ColourSpace::Data, images)?;
     Ok(ScalarMap { offset, gain, texture: Some((texture, channel)) })
 }
 
+/// Where the images of a material come from.
+struct Images<'a, 'c> {
+    own: &'a Material,
+    context: &'a mut Context<'c>,
+}
+
+/// The image at a path, or one that the mesh itself brings.
 fn texture(
     keys: &Keys,
     key: &str,
     text: &str,
     space: ColourSpace,
-    context: &mut Context,
+    images: &mut Images,
 ) -> Result<Arc<Texture>, SceneError> {
+    let Images { own, context } = images;
+    if let Some(place) = text.strip_prefix(MESH_PREFIX) {
+        let found = own.maps().into_iter().find_map(|(name, map)| map.filter(|_| name == place));
+        let there = own.maps().into_iter().filter(|(_, map)| map.is_some()).map(|(name, _)| name);
+        let missing = || match there.collect::<Vec<_>>().join(", ") {
+            none if none.is_empty() => "the mesh brings no maps".to_owned(),
+            some => format!("the mesh brings no map `{place}`; it has {some}"),
+        };
+        return found.cloned().ok_or_else(|| keys.error(key, missing()));
+    }
     let path = context.folder.resolve(text).map_err(|reason| keys.error(key, reason))?;
     context.textures.file(&path, space, &mut context.warnings)
 }

@@ -1,21 +1,23 @@
-//! Scene files in TOML: one mesh, its material, lights and a camera. Every key is known, every number checked, and
+//! Scene files in TOML: one mesh, its material, lights, a camera and a pose. Every key is known, every number checked, and
 //! every error names the line.
 
 mod camera;
 mod keys;
 mod light;
 mod material;
+mod pose;
 
 use super::file::{Folder, read_bytes};
 use super::textures::Textures;
 use super::{CameraChoice, Parts, Piece, ReadOptions, read_mesh_file};
-use crate::SceneError;
 use crate::head::{HeadDetail, built_in};
+use crate::{MeshOrigin, SceneError};
 use keys::{Keys, Source};
 use std::path::{Path, PathBuf};
 use toml::de::DeTable;
 
 pub(super) use camera::CameraKeys;
+pub(super) use pose::PoseKeys;
 
 /// Largest scene file, bytes: honest ones have one thousand.
 const MAX_BYTES: usize = 1 << 20;
@@ -33,7 +35,7 @@ enum MeshSource {
     /// A file, and the options it is read with.
     File(PathBuf, ReadOptions),
     /// The head made by code.
-    BuiltInHead,
+    BuiltInHead(HeadDetail),
 }
 
 /// Reads a scene file and the mesh it names.
@@ -58,19 +60,21 @@ pub(super) fn read(path: &Path, options: &ReadOptions) -> Result<Parts, SceneErr
 }
 
 fn to_parts(root: &Keys, mut context: Context) -> Result<Parts, SceneError> {
-    root.only(&["mesh", "material", "light", "camera"])?;
+    root.only(&["mesh", "material", "light", "camera", "pose"])?;
     let Some(mesh) = root.table("mesh")? else {
         return Err(root.error("mesh", "is missing: a scene needs [mesh] with `path` or `builtin`"));
     };
     // What is small and cheap is checked before a large mesh is read.
     let camera = root.table("camera")?.map(|keys| camera::read(&keys)).transpose()?;
+    let pose = root.table("pose")?.map(|keys| pose::read(&keys)).transpose()?;
     let mesh_source = mesh_source(&mesh, &context)?;
     let lights = light::read_all(root, &mut context)?;
     let mut parts = load(mesh_source)?;
-    if let Some(keys) = root.table("material")? {
-        let change = material::read(&keys, &mut context)?;
-        parts.pieces.iter_mut().for_each(|piece| change.apply(&mut piece.material));
+    for (keys, piece) in materials(root, parts.pieces.len())?.iter().zip(&mut parts.pieces) {
+        let change = material::read(keys, &piece.own_material, &mut context)?;
+        change.apply(&mut piece.material);
     }
+    parts.dark = lights.any && lights.lights.is_empty() && lights.environment.is_none();
     if lights.any {
         parts.lights = lights.lights;
         parts.environment = lights.environment;
@@ -79,19 +83,43 @@ fn to_parts(root: &Keys, mut context: Context) -> Result<Parts, SceneError> {
         parts.background = camera.background();
         parts.camera = CameraChoice::Partial(camera);
     }
+    parts.pose = pose;
     parts.warnings.append(&mut context.warnings);
     Ok(parts)
 }
 
+/// The table of every object's material: `[material]` for all of them, or one `[[material]]` for each, in the order of the
+/// mesh file.
+fn materials<'a>(root: &Keys<'a>, objects: usize) -> Result<Vec<Keys<'a>>, SceneError> {
+    match root.kind("material") {
+        None => Ok(Vec::new()),
+        Some("array") => {
+            let tables = root.tables("material")?;
+            if tables.len() != objects {
+                let reason =
+                    format!("{} materials for {objects} objects; one for each, or [material]", tables.len());
+                return Err(root.error("material", reason));
+            }
+            Ok(tables)
+        }
+        Some(_) => (0..objects).filter_map(|_| root.table("material").transpose()).collect(),
+    }
+}
+
 /// Reads `[mesh]`.
 fn mesh_source(keys: &Keys, context: &Context) -> Result<MeshSource, SceneError> {
-    keys.only(&["path", "builtin", "millimetres_per_unit", "flip_v"])?;
+    keys.only(&["path", "builtin", "triangles", "map_size", "millimetres_per_unit", "flip_v"])?;
     let mm = keys.number_in("millimetres_per_unit", f32::MIN_POSITIVE..=1e6)?;
     let flip_v = keys.boolean("flip_v")?.unwrap_or(false);
+    for key in ["triangles", "map_size"] {
+        if keys.has("path") && keys.has(key) {
+            return Err(keys.error(key, "is for the built-in head; a mesh file has what it has"));
+        }
+    }
     match (keys.string("path")?, keys.string("builtin")?) {
         (Some(_), Some(_)) => Err(keys.error("builtin", "stands beside `path`; only one can be the mesh")),
         (None, None) => Err(keys.error("path", "is missing: [mesh] needs `path` or `builtin`")),
-        (None, Some("head")) => Ok(MeshSource::BuiltInHead),
+        (None, Some("head")) => head_detail(keys).map(MeshSource::BuiltInHead),
         (None, Some(other)) => Err(keys.error("builtin", format!("`{other}` is not known; `head` is"))),
         (Some(text), None) => {
             let path = context.folder.resolve(text).map_err(|reason| keys.error("path", reason))?;
@@ -105,22 +133,35 @@ fn mesh_source(keys: &Keys, context: &Context) -> Result<MeshSource, SceneError>
     }
 }
 
+/// How fine the built-in head is.
+fn head_detail(keys: &Keys) -> Result<HeadDetail, SceneError> {
+    let HeadDetail { triangles, map_size } = HeadDetail::default();
+    // Single precision counts these exactly.
+    let count = |key, limits| Ok::<_, SceneError>(keys.number_in(key, limits)?.map(|count| count as u32));
+    Ok(HeadDetail {
+        triangles: count("triangles", 1000.0..=4_000_000.0)?.map_or(triangles, |count| count as usize),
+        map_size: count("map_size", 0.0..=8192.0)?.unwrap_or(map_size),
+    })
+}
+
 /// The objects of the mesh, with whatever else its file has.
 fn load(source: MeshSource) -> Result<Parts, SceneError> {
     match source {
         MeshSource::File(path, options) => read_mesh_file(&path, &options),
-        MeshSource::BuiltInHead => Ok(built_in_head()),
+        MeshSource::BuiltInHead(detail) => Ok(built_in_head(detail)),
     }
 }
 
 /// The built-in head as the mesh of a scene.
-fn built_in_head() -> Parts {
-    let head = built_in(HeadDetail::default());
+fn built_in_head(detail: HeadDetail) -> Parts {
+    let head = built_in(detail);
     let piece = Piece {
         name: head.name,
         place: "built-in head".to_owned(),
         mesh: head.mesh,
+        own_material: head.material.clone(),
         material: head.material,
     };
-    Parts { pieces: vec![piece], ..Parts::default() }
+    let origin = Some(MeshOrigin::BuiltInHead(detail));
+    Parts { pieces: vec![piece], origin, ..Parts::default() }
 }

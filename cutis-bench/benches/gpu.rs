@@ -1,11 +1,13 @@
 //! Frames on a graphics adapter beside the processor: the scanned head under one light and the environment, at the size
-//! *low* (maps of 1024² texels). With a table of the passes.
+//! *low* (maps of 1024² texels). With a table of the passes, and of what the sizes *low* and *full* move through memory.
 #![allow(missing_docs, reason = "criterion's macros make public functions")]
 
 mod common;
 
 use criterion::{Criterion, SamplingMode, criterion_group, criterion_main};
+use cutis_gpu::cost::{by_pass, total};
 use cutis_gpu::{Adapters, GpuRenderer};
+use cutis_render::settings::Quality;
 use cutis_render::{CpuRenderer, PassTime, Renderer, Settings, Silent};
 use cutis_scene::{Light, ReadOptions, Scene, read_scene};
 use std::path::{Path, PathBuf};
@@ -16,8 +18,12 @@ const FRAMES: usize = 5;
 
 /// The size *low*: maps of 1024² texels, one sample a pixel.
 fn low() -> Settings {
-    Settings { width: 1024, height: 1024, samples_per_pixel: 1, irradiance_size: 1024, ..Settings::default() }
+    Settings::default().with_quality(Quality::Low)
 }
+
+/// Graphics cards and what their memories move, in 10⁹ bytes a second, as their maker states it.
+const CARDS: [(&str, f64); 3] =
+    [("GeForce RTX 4090", 1008.0), ("GeForce RTX 3080", 760.0), ("GeForce RTX 3060", 360.0)];
 
 /// The scan under one point light without extent and the environment; none without the assets.
 fn real_head() -> Option<Scene> {
@@ -68,7 +74,10 @@ fn tables() {
     let frame = CpuRenderer.render(&scene, &low(), &Silent).expect("draws");
     table(&format!("cpu, {}", CpuRenderer.adapter()), start.elapsed(), &frame.passes);
     match GpuRenderer::new(Adapters::Any) {
-        Ok(renderer) => gpu_tables(&renderer, &scene),
+        Ok(renderer) => {
+            gpu_tables(&renderer, &scene);
+            [Quality::Low, Quality::Full].iter().for_each(|&quality| cost_table(&renderer, &scene, quality));
+        }
         Err(error) => eprintln!("\n{error}"),
     }
 }
@@ -86,6 +95,24 @@ fn gpu_tables(renderer: &GpuRenderer, scene: &Scene) {
     let quickest = (0..FRAMES).map(|_| timed()).min_by_key(|(time, _)| *time);
     if let Some((time, passes)) = quickest {
         table(&format!("{}, quickest of {FRAMES} frames", renderer.adapter()), time, &passes);
+    }
+}
+
+/// What a steady frame moves, and how long that takes at least.
+fn cost_table(renderer: &GpuRenderer, scene: &Scene, quality: Quality) {
+    let settings = Settings { ambient_samples: 1, ..Settings::default().with_quality(quality) };
+    let ready = renderer.scene(scene, &settings, &Silent).expect("is uploaded");
+    let costs = ready.costs();
+    eprintln!("\nquality {quality}, {:.0} MB kept\n", ready.memory_bytes() as f64 * 1e-6);
+    eprint!("| pass | MB read | MB written | million taps |");
+    CARDS.iter().for_each(|(card, gigabytes_per_s)| eprint!(" ms, {card} ({gigabytes_per_s} GB/s) |"));
+    eprintln!("\n|---|---|---|---|{}", "---|".repeat(CARDS.len()));
+    for cost in by_pass(&costs).into_iter().chain([total(&costs)]) {
+        let megabytes = [cost.read_bytes, cost.written_bytes].map(|bytes| bytes as f64 * 1e-6);
+        eprint!("| {} | {:.1} | {:.1} |", cost.pass, megabytes[0], megabytes[1]);
+        eprint!(" {:.1} |", cost.taps as f64 * 1e-6);
+        CARDS.iter().for_each(|(_, memory)| eprint!(" {:.3} |", cost.milliseconds(*memory)));
+        eprintln!();
     }
 }
 

@@ -16,8 +16,9 @@ use cutis_render::passes::diffusion::{
     Action, Diffused, DiffusionOperator, Level, Separable, median_texel_mm, plan,
 };
 use cutis_render::passes::stretch::stretch_mm_per_texel;
-use cutis_scene::{Material, Mesh, Object};
-use glam::{Vec2, Vec3, Vec4};
+use cutis_scene::validation::shapes;
+use cutis_scene::{Material, Object};
+use glam::{Vec2, Vec4};
 use std::sync::Arc;
 
 const SIZE: usize = 512;
@@ -63,25 +64,10 @@ fn diffuse_on_gpu(
     Diffused { levels: levels.all.iter().map(level).collect() }
 }
 
-/// A rectangle over the whole texture but for a margin of 4 texels.
+/// A flat patch over the whole texture but for a margin of 4 texels.
 fn patch(along_u: AxisMap, along_v: AxisMap) -> Object {
-    let (margin, cells) = (4.0, 64);
-    let texel = |i: usize| margin + (SIZE as f64 - 2.0 * margin) * i as f64 / cells as f64;
-    let mut mesh = Mesh::default();
-    for j in 0..=cells {
-        for i in 0..=cells {
-            let (u, v) = (texel(i), texel(j));
-            mesh.positions_mm.push(Vec3::new(along_u(u) as f32, -along_v(v) as f32, 0.0));
-            mesh.uvs.push(Vec2::new(u as f32, v as f32) / SIZE as f32);
-        }
-    }
-    let row = cells as u32 + 1;
-    for j in 0..cells as u32 {
-        for i in 0..cells as u32 {
-            let a = j * row + i;
-            mesh.triangles.extend([[a, a + row, a + 1], [a + 1, a + row, a + row + 1]]);
-        }
-    }
+    let size = SIZE as f64;
+    let mesh = shapes::patch(64, 4.0 / size, |u| along_u(u * size), |v| along_v(v * size));
     Object::new("patch", mesh, Material::default())
 }
 

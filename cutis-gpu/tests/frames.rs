@@ -76,6 +76,33 @@ fn the_scanned_head() {
     same_on_both("the_scanned_head", &scene, &settings(), tolerances::SCAN);
 }
 
+/// Share of the pixels that are dark on the processor and lit on the adapter.
+fn leaked(gpu: &cutis_render::Frame, cpu: &cutis_render::Frame) -> f32 {
+    let light = |frame: &cutis_render::Frame, i: usize| frame.pixels[i].truncate().element_sum() / 3.0;
+    let pixels = cpu.pixels.len();
+    let mean = (0..pixels).map(|i| light(cpu, i)).sum::<f32>() / pixels as f32;
+    let lit_here_only = |i: &usize| light(cpu, *i) < 0.1 * mean && light(gpu, *i) > 0.2 * mean;
+    (0..pixels).filter(lit_here_only).count() as f32 / pixels as f32
+}
+
+#[test]
+fn no_light_leaks_past_the_scanned_ear() {
+    let test = "no_light_leaks_past_the_scanned_ear";
+    let (Some(mut scene), Some(renderer)) = (scanned_head(test), renderer(test)) else { return };
+    // The lamp behind the ear alone, and a close view of cheek and ear.
+    scene.lights.remove(0);
+    scene.environment = None;
+    scene.camera.position_mm = Vec3::new(420.0, 0.0, 560.0);
+    scene.camera.look_at_mm = Vec3::new(70.0, -30.0, 0.0);
+    scene.camera.vertical_fov_rad = 0.17;
+    let close = Settings { irradiance_size: 1024, aovs: Vec::new(), ..settings() };
+    let cpu = CpuRenderer.render(&scene, &close, &Silent).expect("draws");
+    let gpu = renderer.render(&scene, &close, &Silent).expect("draws");
+    let leaked = leaked(&gpu, &cpu);
+    eprintln!("{test}: {leaked:.5}");
+    assert!(leaked <= tolerances::LEAKED, "{leaked}");
+}
+
 #[test]
 fn drawing_again_gives_the_same_and_a_moved_camera_another() {
     let Some(renderer) = renderer("drawing_again_gives_the_same_and_a_moved_camera_another") else { return };

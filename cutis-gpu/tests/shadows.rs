@@ -13,9 +13,9 @@ const SIDE_MM: f32 = 40.0;
 /// Half of the plate: half a millimetre thick.
 const HALF_MM: Vec3 = Vec3::new(0.25, 8.0, 3.0);
 /// Height of the light over the plane, as a slope.
-const SLOPE: f32 = 0.2;
+const SLOPE: f32 = 0.1;
 
-/// The plate stands across the plane's middle; the light comes from the right and is 11 degrees high.
+/// The plate stands across the plane's middle; the light comes from the right and is 6 degrees high.
 fn plate_on_a_plane(light: Light) -> Scene {
     let middle = Vec3::new(0.6 * SIDE_MM, -0.5 * SIDE_MM, HALF_MM.z);
     let mut scene = patch_under_a_spot(patch(|u| f64::from(SIDE_MM) * u, |v| f64::from(SIDE_MM) * v));
@@ -59,8 +59,8 @@ fn the_shadow_of_a_thin_plate_begins_at_its_foot_and_has_no_holes() {
         let size = maps.visibility.width() as usize;
         let foot_mm = 0.6 * SIDE_MM;
         let reach_mm = 2.0 * HALF_MM.z / SLOPE;
-        // A texel of the light's map is a tenth of a millimetre wide; the low light draws that out to half of one.
-        let slack_mm = 0.6;
+        // Four texels of the map of the light, which are a tenth of a millimetre wide.
+        let slack_mm = 0.4;
         let (mut lit, mut dark) = (0, 0);
         for (texel, seen) in seen.iter().enumerate() {
             let place =

@@ -4,23 +4,13 @@ use cutis_render::passes::atlas::Atlas;
 use cutis_render::passes::half_size::{HalfSize, Rays};
 use cutis_render::technique::texture_space::LitScene;
 use cutis_render::{Frame, Settings, Silent};
-use cutis_scene::head::{HeadDetail, built_in};
-use cutis_scene::studio::{studio_environment, studio_lights};
-use cutis_scene::{Bvh, Camera, Light, Scene, Texels, Texture};
-use glam::{Vec2, Vec3};
+use cutis_scene::head::HeadDetail;
+use cutis_scene::{Bvh, Light, Scene, Texels, Texture, studio};
+use glam::Vec2;
 use std::sync::Arc;
 
 fn head_in_the_studio() -> Scene {
-    let object = built_in(HeadDetail { triangles: 10_000, map_size: 0 });
-    let bounds_mm = object.mesh.bounds_mm().expect("has points");
-    Scene {
-        objects: vec![object],
-        lights: studio_lights(bounds_mm),
-        environment: Some(studio_environment()),
-        camera: Camera::framing(bounds_mm, Vec3::Z, 0.4),
-        background: None,
-        warnings: Vec::new(),
-    }
+    studio::head_in_the_studio(HeadDetail { triangles: 10_000, map_size: 0 })
 }
 
 /// The same light as a point, whose shadows are sharp: all or nothing.

@@ -4,7 +4,8 @@
 //! front, to the left and above; a rim light behind, on the other side and at the height of the ears, so that it
 //! shines through one; a soft room around both.
 
-use crate::{Environment, Light, Texels, Texture, TextureSource};
+use crate::head::{HeadDetail, built_in};
+use crate::{Camera, Environment, Light, Scene, Texels, Texture, TextureSource};
 use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
@@ -30,6 +31,20 @@ struct Panel {
     edge_rad: f32,
     /// Radiance, W/(m² sr).
     radiance: Vec3,
+}
+
+/// The built-in head in the studio, seen from the front before nothing.
+pub fn head_in_the_studio(detail: HeadDetail) -> Scene {
+    let object = built_in(detail);
+    let bounds_mm = object.mesh.bounds_mm().unwrap_or_default();
+    Scene {
+        objects: vec![object],
+        lights: studio_lights(bounds_mm),
+        environment: Some(studio_environment()),
+        camera: Camera::framing(bounds_mm, Vec3::Z, 0.4),
+        background: None,
+        warnings: Vec::new(),
+    }
 }
 
 /// A soft room: a key box front left, a fill box right, a strip overhead, walls that darken towards the floor.

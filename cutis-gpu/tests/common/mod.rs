@@ -8,10 +8,10 @@ use cutis_gpu::map::Map;
 use cutis_gpu::passes::Passes;
 use cutis_gpu::readback::read_layer;
 use cutis_gpu::{Adapters, Gpu, GpuError, GpuRenderer};
-use cutis_scene::head::{HeadDetail, built_in};
-use cutis_scene::studio::{studio_environment, studio_lights};
-use cutis_scene::{Camera, Light, Material, Mesh, Object, ReadOptions, Scene, read_scene};
-use glam::{Vec2, Vec3, Vec4};
+use cutis_scene::head::HeadDetail;
+use cutis_scene::validation::shapes;
+use cutis_scene::{Camera, Light, Material, Object, ReadOptions, Scene, read_scene, studio};
+use glam::{Vec3, Vec4};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -54,43 +54,18 @@ pub fn scanned_head(test: &str) -> Option<Scene> {
     Some(read_scene(&file, &options).expect("the scene of the scan is valid"))
 }
 
-/// A small built-in head in the studio.
+/// A small built-in head in the studio, before a dark grey.
 pub fn head_in_the_studio() -> Scene {
-    let object = built_in(HeadDetail { triangles: 10_000, map_size: 128 });
-    let bounds_mm = object.mesh.bounds_mm().expect("has points");
-    Scene {
-        objects: vec![object],
-        lights: studio_lights(bounds_mm),
-        environment: Some(studio_environment()),
-        camera: Camera::framing(bounds_mm, Vec3::Z, 0.4),
-        background: Some(Vec3::splat(0.02)),
-        warnings: Vec::new(),
-    }
+    let detail = HeadDetail { triangles: 10_000, map_size: 128 };
+    Scene { background: Some(Vec3::splat(0.02)), ..studio::head_in_the_studio(detail) }
 }
 
 /// How an axis of a texture lies on the plane: share of the texture to millimetres, growing.
 pub type AxisMap = fn(f64) -> f64;
 
-/// A rectangle in the plane z = 0, cut into quads, over the whole texture but for a margin.
+/// A flat patch over nearly the whole texture.
 pub fn patch(along_u: AxisMap, along_v: AxisMap) -> Object {
-    let (cells, margin) = (64, 1.0 / 128.0);
-    let place = |i: usize| margin + (1.0 - 2.0 * margin) * i as f64 / cells as f64;
-    let mut mesh = Mesh::default();
-    for j in 0..=cells {
-        for i in 0..=cells {
-            let (u, v) = (place(i), place(j));
-            mesh.positions_mm.push(Vec3::new(along_u(u) as f32, -along_v(v) as f32, 0.0));
-            mesh.uvs.push(Vec2::new(u as f32, v as f32));
-        }
-    }
-    let row = cells as u32 + 1;
-    for j in 0..cells as u32 {
-        for i in 0..cells as u32 {
-            let a = j * row + i;
-            mesh.triangles.extend([[a, a + row, a + 1], [a + 1, a + row, a + row + 1]]);
-        }
-    }
-    Object::new("patch", mesh, Material::default())
+    Object::new("patch", shapes::patch(64, 1.0 / 128.0, along_u, along_v), Material::default())
 }
 
 /// A patch under a spot whose edge lies across it: no shadow, but light that has somewhere to spread.

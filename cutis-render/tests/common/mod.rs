@@ -7,33 +7,18 @@ use cutis_render::passes::atlas::{Atlas, NO_CHART};
 use cutis_render::passes::blur::Fields;
 use cutis_render::passes::diffusion::{Diffused, DiffusionOperator, Separable};
 use cutis_render::passes::stretch::stretch_mm_per_texel;
-use cutis_scene::{Material, Mesh, Object};
-use glam::{Vec2, Vec3, Vec4};
+use cutis_scene::validation::shapes;
+use cutis_scene::{Material, Object};
+use glam::Vec4;
 use std::sync::Arc;
 
 /// How the two axes of the texture lie on the plane: texel coordinate to millimetres, growing.
 pub type AxisMap = fn(f64) -> f64;
 
-/// A rectangle in the plane z = 0, cut into `cells`² quads, over the whole texture but for a margin of 4 texels.
-pub fn patch(size: usize, cells: usize, along_u: AxisMap, along_v: AxisMap) -> Object {
-    let margin = 4.0;
-    let span = size as f64 - 2.0 * margin;
-    let texel = |i: usize| margin + span * i as f64 / cells as f64;
-    let mut mesh = Mesh::default();
-    for j in 0..=cells {
-        for i in 0..=cells {
-            let (u, v) = (texel(i), texel(j));
-            mesh.positions_mm.push(Vec3::new(along_u(u) as f32, -along_v(v) as f32, 0.0));
-            mesh.uvs.push(Vec2::new((u / size as f64) as f32, (v / size as f64) as f32));
-        }
-    }
-    let row = cells as u32 + 1;
-    for j in 0..cells as u32 {
-        for i in 0..cells as u32 {
-            let a = j * row + i;
-            mesh.triangles.extend([[a, a + row, a + 1], [a + 1, a + row, a + row + 1]]);
-        }
-    }
+/// A flat patch of `cells`² quads over the whole texture but for a margin of 4 texels.
+pub fn patch(size: usize, cells: u32, along_u: AxisMap, along_v: AxisMap) -> Object {
+    let texels = size as f64;
+    let mesh = shapes::patch(cells, 4.0 / texels, |u| along_u(u * texels), |v| along_v(v * texels));
     Object::new("patch", mesh, Material::default())
 }
 

@@ -1,4 +1,4 @@
-//! Closed bodies made by code, with texture coordinates that overlap nowhere.
+//! Closed bodies made by code, with texture coordinates that overlap nowhere, and a flat patch.
 
 use crate::Mesh;
 use glam::{Vec2, Vec3};
@@ -23,6 +23,23 @@ pub fn cuboid(centre_mm: Vec3, half_mm: Vec3) -> Mesh {
             mesh.uvs.push(cell + within);
         }
         mesh.triangles.extend([[base, base + 1, base + 2], [base, base + 2, base + 3]]);
+    }
+    mesh
+}
+
+/// A rectangle in the plane z = 0, cut into `cells`² quads, over the whole texture but for a margin, which is a share of it.
+/// The axes say where a share of the texture lies, mm; both grow, v downwards.
+pub fn patch(cells: u32, margin: f64, along_u: impl Fn(f64) -> f64, along_v: impl Fn(f64) -> f64) -> Mesh {
+    let place = |i: u32| margin + (1.0 - 2.0 * margin) * f64::from(i) / f64::from(cells);
+    let mut mesh = Mesh::default();
+    for (j, i) in (0..=cells).flat_map(|j| (0..=cells).map(move |i| (j, i))) {
+        let (u, v) = (place(i), place(j));
+        mesh.positions_mm.push(Vec3::new(along_u(u) as f32, -along_v(v) as f32, 0.0));
+        mesh.uvs.push(Vec2::new(u as f32, v as f32));
+    }
+    let row = cells + 1;
+    for a in (0..cells).flat_map(|j| (0..cells).map(move |i| j * row + i)) {
+        mesh.triangles.extend([[a, a + row, a + 1], [a + 1, a + row, a + row + 1]]);
     }
     mesh
 }

@@ -12,11 +12,11 @@ fn help_tells_units_ranges_and_defaults() {
     assert!(output.status.success());
     let help = stdout(&output).split_whitespace().collect::<Vec<_>>().join(" ");
     let told = [
-        "[pixels, 1x1 to 16384x16384] [default: 1024x1024]",
+        "[pixels, 1x1 to 16384x16384, default 1024x1024]",
         "[EV (stops), -32 to 32, default 0]",
         "[mm, above 0",
-        "[texels, 16 to 16384] [default: 2048]",
-        "[1 to 1048576] [default: 4]",
+        "[texels, 16 to 16384, default 2048]",
+        "[1 to 1048576, default 4]",
         "[fraction, 0 to 1, default 0.04]",
         "[possible values: none, separable]",
     ];

@@ -1,6 +1,6 @@
 //! The window: takes in what the person does and what the painter has drawn, and asks for the next picture.
 
-use super::files::{Loading, dropped, write_picture};
+use super::files::{Loading, dropped, write_look, write_picture};
 use super::keys::{Command, command};
 use super::look::{Drawing, Look};
 use super::painter::{News, Painter, Wish};
@@ -218,6 +218,15 @@ impl Viewer {
                 Ok(path) => format!("written: {}", path.display()),
                 Err(reason) => reason,
             });
+    }
+
+    /// Writes a scene file of what is seen.
+    pub fn write_look(&mut self) {
+        let look = &self.looks[self.edited];
+        self.message = Some(match write_look(&self.folder, &self.scene, look) {
+            Ok(path) => format!("written: {}", path.display()),
+            Err(reason) => reason,
+        });
     }
 
     /// Begins a turn around the scene of so many pictures.

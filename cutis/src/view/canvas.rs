@@ -4,17 +4,17 @@ use super::app::Viewer;
 use super::mouse::{Movement, movement};
 use super::screen::range;
 use super::shown::{View, unit};
-use super::side::value_of;
+use super::side::{Side, Tile, value_of};
 use cutis_render::Aov;
 use eframe::egui::{
-    Align2, Color32, CursorIcon, FontId, Image, Painter, Pos2, Rect, Response, ScrollArea, Sense, Stroke,
-    TextureHandle, Ui, Vec2, load::SizedTexture, pos2, vec2,
+    Align2, Color32, CursorIcon, FontId, Grid, Image, Painter, Pos2, Rect, Response, ScrollArea, Sense,
+    Stroke, TextureHandle, Ui, Vec2, load::SizedTexture, pos2, vec2,
 };
 
 /// Largest side of a picture, pixels.
 const MAX_PIXELS: u32 = 4096;
 /// Width of a tile, points.
-const TILE: f32 = 250.0;
+const TILE: f32 = 205.0;
 /// How close to the line between two sides the pointer takes hold of it, points.
 const GRIP: f32 = 8.0;
 /// Distance of words from the edge, points.
@@ -145,32 +145,38 @@ fn maps(viewer: &mut Viewer, ui: &mut Ui) {
         ui.centered_and_justified(|ui| ui.label("the maps of all passes are being drawn …"));
         return;
     }
+    let columns = ((ui.available_width() / (TILE + MARGIN)) as usize).max(1);
     let mut chosen = None;
-    ScrollArea::vertical().show(ui, |ui| {
-        ui.horizontal_wrapped(|ui| {
-            for tile in &side.maps {
-                ui.vertical(|ui| {
-                    ui.set_width(TILE);
-                    let image = Image::new(SizedTexture::new(tile.texture.id(), Vec2::splat(TILE)));
-                    let name = format!("{} {}", tile.aov, unit(tile.aov));
-                    let response = ui.add(image.sense(Sense::click()).alt_text(name.clone()));
-                    ui.label(name);
-                    if let Some(pointer) = response.hover_pos() {
-                        let place = (pointer - response.rect.min) / response.rect.size();
-                        let layer = side.painted.as_ref().and_then(|p| p.maps.get(tile.index));
-                        let value = layer.and_then(|layer| value_of(layer, [place.x, place.y]));
-                        response.clone().on_hover_text(value.unwrap_or_default());
-                    }
-                    if response.clicked() {
-                        chosen = Some(View::Map(tile.aov));
-                    }
-                });
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        Grid::new("maps").num_columns(columns).spacing([MARGIN, MARGIN]).show(ui, |ui| {
+            for (i, tile) in side.maps.iter().enumerate() {
+                if ui.vertical(|ui| tile_of(ui, side, tile)).inner {
+                    chosen = Some(View::Map(tile.aov));
+                }
+                if (i + 1) % columns == 0 {
+                    ui.end_row();
+                }
             }
         });
     });
     if let Some(view) = chosen {
         viewer.shown.view = view;
     }
+}
+
+/// A texture with its name, and the value under the pointer. Tells whether it was clicked.
+fn tile_of(ui: &mut Ui, side: &Side, tile: &Tile) -> bool {
+    let name = format!("{} {}", tile.aov, unit(tile.aov));
+    let image = Image::new(SizedTexture::new(tile.texture.id(), Vec2::splat(TILE)));
+    let response = ui.add(image.sense(Sense::click()).alt_text(name.clone()));
+    ui.label(name);
+    if let Some(pointer) = response.hover_pos() {
+        let place = (pointer - response.rect.min) / response.rect.size();
+        let layer = side.painted.as_ref().and_then(|p| p.maps.get(tile.index));
+        let value = layer.and_then(|layer| value_of(layer, [place.x, place.y]));
+        response.clone().on_hover_text(value.unwrap_or_default());
+    }
+    response.clicked()
 }
 
 /// One of those textures in full; a click goes back.

@@ -1,15 +1,16 @@
 //! Files that come in and go out while looking: dropped scenes, heads and environments; pictures.
 
+use super::look::Look;
 use crate::scene_source::SceneSource;
 use cutis_render::Frame;
 use cutis_render::film::{self, Film};
-use cutis_scene::Scene;
+use cutis_scene::{Scene, write_scene};
 use eframe::egui::Context;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 
-/// Highest number of a picture.
-const MAX_PICTURES: u32 = 9999;
+/// Highest number of a file.
+const MAX_FILES: u32 = 9999;
 
 /// A scene that is being read.
 pub struct Loading {
@@ -53,16 +54,28 @@ pub fn dropped(path: &Path, now: &SceneSource) -> SceneSource {
 /// # Errors
 /// In words, if it cannot be written.
 pub fn write_picture(folder: &Path, frame: &Frame, film: &Film) -> Result<PathBuf, String> {
-    let path = free_name(folder)?;
+    let path = free_name(folder, "png")?;
     let format = film::check_output(&path, None).map_err(|error| error.to_string())?;
     film::write(&path, format, frame, film).map_err(|error| error.to_string())?;
     Ok(path)
 }
 
-fn free_name(folder: &Path) -> Result<PathBuf, String> {
-    let names = (1..=MAX_PICTURES).map(|n| folder.join(format!("cutis-{n:04}.png")));
+/// Writes a scene file of what is seen, under the first free number; the exposure goes with the camera.
+///
+/// # Errors
+/// In words, if it cannot be written.
+pub fn write_look(folder: &Path, scene: &Scene, look: &Look) -> Result<PathBuf, String> {
+    let path = free_name(folder, "toml")?;
+    let mut scene = look.applied_to(scene).map_err(|error| error.to_string())?;
+    scene.camera.exposure_ev = look.film.exposure_ev;
+    write_scene(&scene, &path).map_err(|error| error.to_string())?;
+    Ok(path)
+}
+
+fn free_name(folder: &Path, extension: &str) -> Result<PathBuf, String> {
+    let names = (1..=MAX_FILES).map(|n| folder.join(format!("cutis-{n:04}.{extension}")));
     names.into_iter().find(|path| !path.exists()).ok_or_else(|| {
-        format!("{}: there are {MAX_PICTURES} pictures already; move some away", folder.display())
+        format!("{}: there are {MAX_FILES} such files already; move some away", folder.display())
     })
 }
 

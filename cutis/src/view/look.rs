@@ -3,8 +3,8 @@
 use crate::backend::Backend;
 use cutis_render::film::Film;
 use cutis_render::prepare::kernel::stretched;
-use cutis_render::{Diffusion, TechniqueName};
-use cutis_scene::{Camera, Light, Material, ScalarMap, Scattering, Scene};
+use cutis_render::{Diffusion, RenderError, TechniqueName};
+use cutis_scene::{Camera, Light, Material, Pose, PoseError, ScalarMap, Scattering, Scene};
 use glam::{Quat, Vec3};
 
 /// How a scene is looked at.
@@ -16,6 +16,8 @@ pub struct Look {
     pub lights: Vec<LightLook>,
     /// In which surroundings.
     pub surroundings: Surroundings,
+    /// In which pose.
+    pub pose: Pose,
     /// Of which material.
     pub skin: SkinLook,
     /// By which method.
@@ -103,6 +105,7 @@ impl Look {
                 turn_degrees: 0.0,
                 visible: scene.environment.as_ref().is_some_and(|e| e.visible),
             },
+            pose: scene.pose(),
             skin: SkinLook::of(scene.objects.first().map(|o| &o.material)),
             drawing,
             film: Film { exposure_ev, ..Film::default() },
@@ -110,8 +113,14 @@ impl Look {
     }
 
     /// The scene as it is looked at.
-    pub fn applied_to(&self, scene: &Scene) -> Scene {
+    ///
+    /// # Errors
+    /// If it cannot take the pose.
+    pub fn applied_to(&self, scene: &Scene) -> Result<Scene, RenderError> {
         let mut scene = scene.clone();
+        if scene.pose() != self.pose {
+            scene.set_pose(&self.pose).map_err(|error| bad_pose(&error))?;
+        }
         let middle_mm = scene.bounds_mm().map_or(Vec3::ZERO, |[lo, hi]| 0.5 * (lo + hi));
         scene.camera = self.camera;
         scene.lights = scene
@@ -129,16 +138,22 @@ impl Look {
         // Nothing shines: no need to ask what is open to it.
         scene.environment = scene.environment.filter(|_| self.surroundings.strength > 0.0);
         scene.objects.iter_mut().for_each(|object| self.skin.apply_to(&mut object.material));
-        scene
+        Ok(scene)
     }
 
     /// Whether everything but camera and film is the same, so that light need not be gathered anew.
     pub fn is_lit_like(&self, other: &Self) -> bool {
         self.lights == other.lights
             && self.surroundings == other.surroundings
+            && self.pose == other.pose
             && self.skin == other.skin
             && self.drawing == other.drawing
     }
+}
+
+/// A pose that a scene cannot take.
+pub fn bad_pose(error: &PoseError) -> RenderError {
+    RenderError::BadBody { object: "the whole scene".to_owned(), reason: error.to_string() }
 }
 
 impl LightLook {

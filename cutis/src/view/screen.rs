@@ -9,6 +9,7 @@ use cutis_scene::Scene;
 use eframe::egui::{Color32, ColorImage};
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
+use std::f32::consts::PI;
 
 /// Display-linear grey behind what is transparent.
 const BEHIND: f32 = 0.02;
@@ -43,7 +44,11 @@ pub fn layer_image(layer: &Layer, aov: Aov, film: &Film) -> ColorImage {
         Aov::Albedo => encoded(p.truncate()),
         Aov::Charts => chart_colour(p.x),
         Aov::Stretch | Aov::Thickness => on_scale((p.x - low) / (high - low).max(f32::MIN_POSITIVE)),
-        _ => encoded(p.truncate() * gain),
+        // As a white sheet in this light would look.
+        Aov::Irradiance | Aov::Blur(_) | Aov::Exitance => {
+            encoded(film.tone_mapper.map(p.truncate() * (gain / PI)))
+        }
+        _ => encoded(film.tone_mapper.map(p.truncate() * gain)),
     };
     image([layer.width, layer.height], layer.pixels.par_iter().map(pixel).collect())
 }

@@ -4,12 +4,12 @@ use super::on_cpu::OnCpu;
 use super::on_gpu::{Device, OnGpu};
 use super::stage::Stage;
 use super::watch::Watch;
-use super::{Desk, Painted, Wish};
+use super::{Desk, Painted, Wish, Work};
 use crate::backend::Backend;
 use crate::view::look::Look;
 use crate::view::screen;
 use cutis_gpu::GpuRenderer;
-use cutis_render::{Frame, Layer, RenderError, Renderer, Settings};
+use cutis_render::{CpuRenderer, Frame, Layer, RenderError, Renderer, Settings};
 use cutis_scene::Scene;
 use std::sync::Arc;
 use std::time::Instant;
@@ -29,6 +29,8 @@ pub struct Drawn {
     pub maps: Vec<Layer>,
     /// What drew it.
     pub machine: String,
+    /// What that costs any graphics adapter.
+    pub work: Option<Work>,
 }
 
 /// What to draw: one look at one stage.
@@ -57,27 +59,27 @@ impl Artist {
         let look = &wish.looks[side];
         let mut settings = stage.settings(&look.drawing, wish.size);
         settings.aovs = wish.shown.layers(look.drawing.technique);
-        let finish =
-            |frame: Frame, quality: String, maps: Vec<Layer>, machine: String, is_final: bool| Painted {
-                number: wish.number,
-                side,
-                camera: look.camera,
-                quality,
-                is_final,
-                image: screen::picture(&frame, look, &wish.shown, &wish.scene),
-                maps: Arc::new(maps),
-                machine,
-                time: start.elapsed(),
-                frame: Arc::new(frame),
-            };
-        let preview = |frame, quality| finish(frame, quality, Vec::new(), "the processor".to_owned(), false);
+        let finish = |drawn: Drawn, quality: String, is_final: bool| Painted {
+            number: wish.number,
+            side,
+            camera: look.camera,
+            quality,
+            is_final,
+            image: screen::picture(&drawn.frame, look, &wish.shown, &wish.scene),
+            maps: Arc::new(drawn.maps),
+            machine: drawn.machine,
+            work: drawn.work,
+            time: start.elapsed(),
+            frame: Arc::new(drawn.frame),
+        };
+        let preview = |frame, quality| {
+            let machine = CpuRenderer.adapter();
+            finish(Drawn { frame, maps: Vec::new(), machine, work: None }, quality, false)
+        };
         let watch = Watch::new(desk, &preview);
         let subject = Subject { scene: &wish.scene, look, settings, wants_maps: wish.shown.wants_maps() };
         match self.draw(device, &subject, &watch) {
-            Ok(Drawn { frame, maps, machine }) => {
-                let is_final = stage == Stage::Fine;
-                Ok(Some(finish(frame, stage.name().to_owned(), maps, machine, is_final)))
-            }
+            Ok(drawn) => Ok(Some(finish(drawn, stage.name().to_owned(), stage == Stage::Fine))),
             Err(RenderError::Stopped) => Ok(None),
             Err(error) => Err(error.to_string()),
         }
@@ -104,7 +106,7 @@ impl Artist {
 
 /// Renders from nothing, for techniques that keep nothing.
 pub fn from_nothing(renderer: &dyn Renderer, subject: &Subject, watch: &Watch) -> Result<Drawn, RenderError> {
-    let scene = subject.look.applied_to(subject.scene);
+    let scene = subject.look.applied_to(subject.scene)?;
     let frame = renderer.render(&scene, &subject.settings, watch)?;
-    Ok(Drawn { frame, maps: Vec::new(), machine: renderer.adapter() })
+    Ok(Drawn { frame, maps: Vec::new(), machine: renderer.adapter(), work: None })
 }

@@ -10,6 +10,7 @@ use super::look::Look;
 use super::mailbox::Mailbox;
 use super::shown::Shown;
 use artist::Artist;
+use cutis_gpu::cost::Cost;
 use cutis_render::{Frame, Layer};
 use cutis_scene::{Camera, Scene};
 use eframe::egui;
@@ -68,8 +69,19 @@ pub struct Painted {
     pub maps: Arc<Vec<Layer>>,
     /// What drew it.
     pub machine: String,
+    /// What that costs any graphics adapter; none for the processor.
+    pub work: Option<Work>,
     /// How long it took.
     pub time: Duration,
+}
+
+/// What a frame costs a graphics adapter.
+#[derive(Debug, Clone)]
+pub struct Work {
+    /// Textures and buffers that are kept.
+    pub memory_bytes: u64,
+    /// What each pass moves through memory.
+    pub costs: Vec<Cost>,
 }
 
 /// News from the painter.

@@ -34,7 +34,7 @@ impl Kept {
 
     fn new(subject: &Subject, watch: &Watch) -> Result<Self, RenderError> {
         let Settings { irradiance_size, shadow_samples, .. } = subject.settings;
-        let scene = Arc::new(subject.look.applied_to(subject.scene));
+        let scene = Arc::new(subject.look.applied_to(subject.scene)?);
         Ok(Self {
             lit: LitScene::new(scene, &subject.settings, watch)?,
             scene: Arc::clone(subject.scene),
@@ -62,6 +62,6 @@ impl OnCpu {
         let wanted = texture_maps().filter(|_| subject.wants_maps);
         let maps = wanted.filter_map(|aov| kept.lit.texture_layer(aov)).collect();
         self.kept = Some(kept);
-        Ok(Drawn { frame, maps, machine: CpuRenderer.adapter() })
+        Ok(Drawn { frame, maps, machine: CpuRenderer.adapter(), work: None })
     }
 }

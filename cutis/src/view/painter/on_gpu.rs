@@ -1,14 +1,16 @@
 //! Draws on a graphics adapter: textures and bindings of the picture before are kept as long as they fit.
 
+use super::Work;
 use super::artist::{Drawn, Subject};
 use super::watch::Watch;
 use crate::backend::Backend;
-use crate::view::look::Look;
+use crate::view::look::{Look, bad_pose};
 use crate::view::shown::texture_maps;
+use cutis_gpu::cost::by_pass;
 use cutis_gpu::scene::SceneError;
 use cutis_gpu::{Adapters, GpuError, GpuRenderer, GpuScene};
 use cutis_render::technique::texture_space::warnings;
-use cutis_render::{AovSpace, Frame, RenderError, Renderer, Settings};
+use cutis_render::{AovSpace, Frame, Progress, RenderError, Renderer, Settings};
 use cutis_scene::Scene;
 use std::sync::Arc;
 
@@ -44,17 +46,19 @@ struct Kept {
     scene: Arc<Scene>,
     look: Look,
     settings: Settings,
+    /// As it was uploaded.
+    uploaded: Scene,
     ready: GpuScene,
 }
 
 impl Kept {
-    /// Better light than is asked for is welcome.
+    /// Better light than is asked for is welcome, and poses are taken by the device. Every place of a light's disc that is
+    /// tried costs the same in every frame, so that there are enough of them from the first.
     fn serves(&self, renderer: &Arc<GpuRenderer>, subject: &Subject) -> bool {
         Arc::ptr_eq(&self.renderer, renderer)
             && Arc::ptr_eq(&self.scene, subject.scene)
-            && self.look.is_lit_like(subject.look)
+            && self.look.is_lit_like(&Look { pose: self.look.pose.clone(), ..subject.look.clone() })
             && self.settings.irradiance_size >= subject.settings.irradiance_size
-            && self.settings.shadow_samples >= subject.settings.shadow_samples
     }
 }
 
@@ -89,8 +93,8 @@ impl OnGpu {
             Some(kept) => kept,
             None => {
                 settings.check()?;
-                let lit = look.applied_to(scene);
-                let ready = renderer.scene(&lit, settings, watch).map_err(|error| match error {
+                let uploaded = look.applied_to(scene)?;
+                let ready = renderer.scene(&uploaded, settings, watch).map_err(|error| match error {
                     SceneError::Render(error) => error,
                     SceneError::Gpu(error) => because(&error),
                 })?;
@@ -99,10 +103,20 @@ impl OnGpu {
                     scene: Arc::clone(scene),
                     look: (*look).clone(),
                     settings: settings.clone(),
+                    uploaded,
                     ready,
                 }
             }
         };
+        if !watch.goes_on() {
+            self.kept = Some(kept);
+            return Err(RenderError::Stopped);
+        }
+        if kept.look.pose != look.pose {
+            let posed = kept.ready.set_pose(&renderer.gpu, &kept.uploaded, &look.pose);
+            posed.map_err(|error| bad_pose(&error))?;
+            kept.look.pose = look.pose.clone();
+        }
         kept.ready.set_picture(&renderer.gpu, &renderer.passes, settings).map_err(|error| because(&error))?;
         kept.ready.set_camera(&renderer.gpu, &look.camera);
         let drawn = Self::frame(renderer, &kept.ready, subject).map_err(|error| because(&error))?;
@@ -128,7 +142,8 @@ impl OnGpu {
             diffusion_reports: Vec::new(),
             warnings: told,
         };
-        Ok(Drawn { frame, maps, machine: renderer.adapter() })
+        let work = Some(Work { memory_bytes: ready.memory_bytes(), costs: by_pass(&ready.costs()) });
+        Ok(Drawn { frame, maps, machine: renderer.adapter(), work })
     }
 }
 

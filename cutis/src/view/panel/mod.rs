@@ -4,6 +4,7 @@ mod light;
 mod method;
 mod number;
 mod picture;
+mod pose;
 mod profile_plot;
 mod skin;
 mod times;
@@ -19,6 +20,7 @@ pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
         section("Skin", true).show(ui, |ui| skin::show(viewer, ui));
         section("Light", true).show(ui, |ui| light::show(viewer, ui));
         section("Picture", true).show(ui, |ui| picture::show(viewer, ui));
+        section("Pose", false).show(ui, |ui| pose::show(viewer, ui));
         section("Method", true).show(ui, |ui| method::show(viewer, ui));
         section("Times", false).show(ui, |ui| times::show(viewer, ui));
     });

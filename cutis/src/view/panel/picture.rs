@@ -35,6 +35,13 @@ pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
     {
         viewer.write_picture();
     }
+    if ui
+        .button("save the scene")
+        .on_hover_text("a scene file of what is seen; film and method stay out of it")
+        .clicked()
+    {
+        viewer.write_look();
+    }
     turntable(viewer, ui);
     open(viewer, ui);
 }

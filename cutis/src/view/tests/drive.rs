@@ -36,6 +36,19 @@ pub fn window(size: [f32; 2], backend: Backend) -> Window {
         .build_ui_state(|ui, viewer: &mut Viewer| viewer.show(ui), viewer)
 }
 
+/// The processor, and a graphics adapter where there is one; `CUTIS_REQUIRE_GPU=1` forbids to do without.
+pub fn backends(test: &str) -> Vec<Backend> {
+    match cutis_gpu::Gpu::find(cutis_gpu::Adapters::Any) {
+        Ok(_) => vec![Backend::Cpu, Backend::Gpu],
+        Err(why) => {
+            let required = std::env::var_os("CUTIS_REQUIRE_GPU").is_some_and(|v| v == "1");
+            assert!(!required, "{test}: {why}");
+            eprintln!("SKIPPED: {test} on a graphics adapter: {why}");
+            vec![Backend::Cpu]
+        }
+    }
+}
+
 /// Draws until nothing better will come.
 pub fn settle(window: &mut Window) {
     let start = Instant::now();

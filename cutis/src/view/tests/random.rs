@@ -1,6 +1,6 @@
 //! Hundreds of things a person might do, at random.
 
-use super::drive::{Window, drag, drop_file, press, settle, window};
+use super::drive::{Window, backends, drag, drop_file, press, settle, window};
 use crate::backend::Backend;
 use crate::view::keys::{KEYS, TECHNIQUE_KEYS};
 use eframe::egui::{
@@ -82,17 +82,8 @@ fn random_actions(backend: Backend, seed: u64) {
 }
 
 #[test]
-fn five_hundred_random_actions_on_the_processor() {
-    random_actions(Backend::Cpu, 1);
-}
-
-#[test]
-fn five_hundred_random_actions_on_a_graphics_adapter() {
-    if let Err(why) = cutis_gpu::Gpu::find(cutis_gpu::Adapters::Any) {
-        let required = std::env::var_os("CUTIS_REQUIRE_GPU").is_some_and(|v| v == "1");
-        assert!(!required, "{why}");
-        eprintln!("SKIPPED: five_hundred_random_actions_on_a_graphics_adapter: {why}");
-        return;
+fn five_hundred_random_actions() {
+    for (seed, backend) in (1..).zip(backends("five_hundred_random_actions")) {
+        random_actions(backend, seed);
     }
-    random_actions(Backend::Gpu, 2);
 }

@@ -62,8 +62,8 @@ pub fn range(layer: &Layer) -> [f32; 2] {
 
 /// A place of the scale of colours, 0 to 1.
 fn on_scale(share: f32) -> Color32 {
-    // Not a number counts as the least.
-    let place = share.max(0.0).min(1.0) * (SCALE.len() - 1) as f32;
+    // Not a number counts as the least: max takes its other side.
+    let place = share.clamp(0.0, 1.0).max(0.0) * (SCALE.len() - 1) as f32;
     let i = (place as usize).min(SCALE.len() - 2);
     let [a, b] = [SCALE[i], SCALE[i + 1]].map(|c| Vec3::from_array(c.map(f32::from)));
     let mixed = a.lerp(b, place - i as f32);

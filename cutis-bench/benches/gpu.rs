@@ -21,7 +21,7 @@ fn low() -> Settings {
     Settings::default().with_quality(Quality::Low)
 }
 
-/// Graphics cards and what their memories move, in 10⁹ bytes a second, as their maker states it.
+/// Graphics cards and what their memories move, in 10⁹ bytes a second, as comparisons of cards list it (alldbin.com).
 const CARDS: [(&str, f64); 3] =
     [("GeForce RTX 4090", 1008.0), ("GeForce RTX 3080", 760.0), ("GeForce RTX 3060", 360.0)];
 

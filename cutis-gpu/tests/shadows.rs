@@ -87,3 +87,42 @@ fn the_shadow_of_a_thin_plate_begins_at_its_foot_and_has_no_holes() {
         assert!(lit > 10_000 && dark > 10_000, "{lit} lit, {dark} dark");
     }
 }
+
+/// A large light just over the horizon of a plane: what of its disc lies below lights nothing, by the area of a segment of a
+/// circle.
+#[test]
+fn what_lies_below_the_horizon_of_a_plane_does_not_light_it() {
+    let Some(renderer) = renderer("what_lies_below_the_horizon_of_a_plane_does_not_light_it") else { return };
+    let radius_rad = 3f32.to_radians();
+    for share in [1.0 / 3.0, 2.0 / 3.0f32] {
+        let height_rad = share * radius_rad;
+        let mut scene = plate_on_a_plane(Light::Directional {
+            dir_to_light: Vec3::new(height_rad.cos(), 0.0, height_rad.sin()),
+            irradiance_w_per_m2: Vec3::ONE,
+            angular_radius_rad: radius_rad,
+        });
+        scene.objects.truncate(1);
+        let settings = Settings {
+            width: 8,
+            height: 8,
+            irradiance_size: 128,
+            samples_per_pixel: 1,
+            ..Settings::default()
+        };
+        let ready = renderer.scene(&scene, &settings, &Silent).expect("is uploaded");
+        ready.draw(&renderer.gpu).expect("is drawn");
+        let maps = &ready.objects[0];
+        let seen = read(&renderer.gpu, &maps.visibility, 0);
+        let size = maps.visibility.width() as usize;
+        let inner = |i: &usize| (8..size - 8).contains(&(i % size)) && (8..size - 8).contains(&(i / size));
+        let texels: Vec<f32> = (0..seen.len()).filter(inner).map(|i| seen[i].x).collect();
+        let mean = texels.iter().sum::<f32>() / texels.len() as f32;
+        let below = (share.acos() - share * (1.0 - share * share).sqrt()) / std::f32::consts::PI;
+        // Sixteen places, turned from texel to texel: their mean is that of a segment to a quarter of one of them.
+        assert!(
+            (mean - (1.0 - below)).abs() < 0.25 / 16.0,
+            "{share}: {mean} is seen, {} is above",
+            1.0 - below
+        );
+    }
+}

@@ -3,7 +3,7 @@
 mod common;
 
 use common::tolerances;
-use common::{assets, difference, head_in_the_studio, renderer};
+use common::{assets, difference, head_in_the_studio, renderer, small_frame};
 use cutis_gpu::readback::mapped;
 use cutis_gpu::scene::geometry::Vertex;
 use cutis_gpu::{Gpu, GpuRenderer, GpuScene};
@@ -13,17 +13,6 @@ use cutis_render::{Aov, AovSpace, CpuRenderer, Renderer, Settings, Silent};
 use cutis_scene::studio::studio_lights;
 use cutis_scene::{Camera, MorphTarget, Object, Pose, ReadOptions, Scene, Wave, read_scene};
 use glam::{Vec3, Vec4};
-
-fn settings() -> Settings {
-    Settings {
-        width: 160,
-        height: 160,
-        irradiance_size: 512,
-        samples_per_pixel: 9,
-        shadow_samples: 16,
-        ..Settings::default()
-    }
-}
 
 /// The built-in head with a shape that swells one side of it.
 fn head() -> Scene {
@@ -99,7 +88,7 @@ fn vertices(gpu: &Gpu, buffer: &wgpu::Buffer) -> Vec<Vertex> {
 /// Fails where a vertex differs from the processor's.
 fn check_vertices(test: &str, scene: &Scene, pose: &Pose) {
     let Some(renderer) = renderer(test) else { return };
-    let small = Settings { width: 16, height: 16, irradiance_size: 128, ..settings() };
+    let small = Settings { width: 16, height: 16, irradiance_size: 128, ..small_frame() };
     let ready = posed_on_gpu(renderer, scene, pose, &small);
     let wanted = scene.objects[0].deformed(pose);
     let got = vertices(&renderer.gpu, &ready.objects[0].geometry.vertices);
@@ -133,7 +122,7 @@ fn every_vertex_of_a_bent_hand_is_that_of_the_processor() {
 #[test]
 fn stretch_follows_the_pose() {
     let Some(renderer) = renderer("stretch_follows_the_pose") else { return };
-    let (scene, settings) = (head(), Settings { width: 32, height: 32, ..settings() });
+    let (scene, settings) = (head(), Settings { width: 32, height: 32, ..small_frame() });
     let ready = posed_on_gpu(renderer, &scene, &waved(), &settings);
     let GpuRenderer { gpu, passes, .. } = renderer;
     let got =
@@ -152,8 +141,8 @@ fn stretch_follows_the_pose() {
 /// Draws a pose on both and compares what is covered in both.
 fn same_frame(test: &str, scene: &Scene, pose: &Pose, allowed: tolerances::Tolerance) {
     let Some(renderer) = renderer(test) else { return };
-    let cpu = CpuRenderer.render(&posed_on_cpu(scene, pose), &settings(), &Silent).expect("draws");
-    let ready = posed_on_gpu(renderer, scene, pose, &settings());
+    let cpu = CpuRenderer.render(&posed_on_cpu(scene, pose), &small_frame(), &Silent).expect("draws");
+    let ready = posed_on_gpu(renderer, scene, pose, &small_frame());
     let gpu = ready.picture(&renderer.gpu).expect("is drawn");
     difference(&gpu, &cpu.pixels, |_| true).check(test, allowed);
 }
@@ -171,7 +160,7 @@ fn a_waved_head_in_the_studio_that_was_uploaded_in_its_pose() {
     let Some(renderer) = renderer(test) else { return };
     let posed = posed_on_cpu(&head(), &waved());
     let [cpu, gpu]: [&dyn Renderer; 2] = [&CpuRenderer, renderer];
-    let [cpu, gpu] = [cpu, gpu].map(|r| r.render(&posed, &settings(), &Silent).expect("draws").pixels);
+    let [cpu, gpu] = [cpu, gpu].map(|r| r.render(&posed, &small_frame(), &Silent).expect("draws").pixels);
     difference(&gpu, &cpu, |_| true).check(test, tolerances::WAVED_HEAD);
 }
 
@@ -185,7 +174,7 @@ fn a_bent_hand() {
 fn back_at_rest_the_picture_is_as_it_was() {
     let Some(renderer) = renderer("back_at_rest_the_picture_is_as_it_was") else { return };
     let scene = head();
-    let small = Settings { width: 48, height: 48, irradiance_size: 128, ..settings() };
+    let small = Settings { width: 48, height: 48, irradiance_size: 128, ..small_frame() };
     let ready = renderer.scene(&scene, &small, &Silent).expect("is uploaded");
     let picture = |pose: &Pose| {
         ready.set_pose(&renderer.gpu, &scene, pose).expect("is a pose of the scene");
@@ -204,7 +193,7 @@ fn back_at_rest_the_picture_is_as_it_was() {
 fn a_scene_uploaded_in_a_pose_starts_in_it() {
     let Some(renderer) = renderer("a_scene_uploaded_in_a_pose_starts_in_it") else { return };
     let posed = posed_on_cpu(&head(), &waved());
-    let small = Settings { width: 16, height: 16, irradiance_size: 128, ..settings() };
+    let small = Settings { width: 16, height: 16, irradiance_size: 128, ..small_frame() };
     let ready = renderer.scene(&posed, &small, &Silent).expect("is uploaded");
     ready.draw(&renderer.gpu).expect("is drawn");
     let got = vertices(&renderer.gpu, &ready.objects[0].geometry.vertices);

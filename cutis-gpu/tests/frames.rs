@@ -3,22 +3,16 @@
 mod common;
 
 use common::tolerances::{self, Tolerance};
-use common::{difference, head_in_the_studio, patch, patch_under_a_spot, renderer, scanned_head};
+use common::{
+    difference, head_in_the_studio, patch, patch_under_a_spot, renderer, scanned_head, small_frame,
+};
 use cutis_gpu::GpuRenderer;
 use cutis_render::{Aov, CpuRenderer, Renderer, Settings, Silent};
 use cutis_scene::{Light, Scene};
 use glam::Vec3;
 
 fn settings() -> Settings {
-    Settings {
-        width: 160,
-        height: 160,
-        irradiance_size: 512,
-        samples_per_pixel: 9,
-        shadow_samples: 16,
-        aovs: vec![Aov::Normal, Aov::Albedo, Aov::Diffuse, Aov::Specular],
-        ..Settings::default()
-    }
+    Settings { aovs: vec![Aov::Normal, Aov::Albedo, Aov::Diffuse, Aov::Specular], ..small_frame() }
 }
 
 /// Draws a scene on both and compares what is covered in both.

@@ -3,10 +3,11 @@
 mod common;
 
 use common::{patch, patch_under_a_spot, read, renderer};
+use cutis_gpu::GpuRenderer;
 use cutis_render::{Settings, Silent};
 use cutis_scene::validation::shapes::cuboid;
 use cutis_scene::{Light, Material, Object, Scene};
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 
 /// Side of the plane, mm.
 const SIDE_MM: f32 = 40.0;
@@ -38,6 +39,16 @@ fn lamp() -> Light {
     Light::Point { position_mm, intensity_w_per_sr: Vec3::ONE, radius_mm: 2.0 }
 }
 
+/// What every texel of the plane sees of the light, and how many there are along a side.
+fn seen_of(renderer: &GpuRenderer, scene: &Scene, irradiance_size: u32) -> (Vec<Vec4>, usize) {
+    let settings =
+        Settings { width: 8, height: 8, irradiance_size, samples_per_pixel: 1, ..Settings::default() };
+    let ready = renderer.scene(scene, &settings, &Silent).expect("is uploaded");
+    ready.draw(&renderer.gpu).expect("is drawn");
+    let visibility = &ready.objects[0].visibility;
+    (read(&renderer.gpu, visibility, 0), visibility.width() as usize)
+}
+
 #[test]
 fn the_shadow_of_a_thin_plate_begins_at_its_foot_and_has_no_holes() {
     let Some(renderer) = renderer("the_shadow_of_a_thin_plate_begins_at_its_foot_and_has_no_holes") else {
@@ -45,18 +56,7 @@ fn the_shadow_of_a_thin_plate_begins_at_its_foot_and_has_no_holes() {
     };
     for (light, what) in [(sun(), "sharp"), (lamp(), "soft")] {
         let scene = plate_on_a_plane(light);
-        let settings = Settings {
-            width: 8,
-            height: 8,
-            irradiance_size: 512,
-            samples_per_pixel: 1,
-            ..Settings::default()
-        };
-        let ready = renderer.scene(&scene, &settings, &Silent).expect("is uploaded");
-        ready.draw(&renderer.gpu).expect("is drawn");
-        let maps = &ready.objects[0];
-        let seen = read(&renderer.gpu, &maps.visibility, 0);
-        let size = maps.visibility.width() as usize;
+        let (seen, size) = seen_of(renderer, &scene, 512);
         let foot_mm = 0.6 * SIDE_MM;
         let reach_mm = 2.0 * HALF_MM.z / SLOPE;
         // Four texels of the map of the light, which are a tenth of a millimetre wide.
@@ -102,18 +102,7 @@ fn what_lies_below_the_horizon_of_a_plane_does_not_light_it() {
             angular_radius_rad: radius_rad,
         });
         scene.objects.truncate(1);
-        let settings = Settings {
-            width: 8,
-            height: 8,
-            irradiance_size: 128,
-            samples_per_pixel: 1,
-            ..Settings::default()
-        };
-        let ready = renderer.scene(&scene, &settings, &Silent).expect("is uploaded");
-        ready.draw(&renderer.gpu).expect("is drawn");
-        let maps = &ready.objects[0];
-        let seen = read(&renderer.gpu, &maps.visibility, 0);
-        let size = maps.visibility.width() as usize;
+        let (seen, size) = seen_of(renderer, &scene, 128);
         let inner = |i: &usize| (8..size - 8).contains(&(i % size)) && (8..size - 8).contains(&(i / size));
         let texels: Vec<f32> = (0..seen.len()).filter(inner).map(|i| seen[i].x).collect();
         let mean = texels.iter().sum::<f32>() / texels.len() as f32;

@@ -10,8 +10,8 @@ pub trait Progress: Sync {
     fn advance(&self, steps: u64);
     /// How good the current pass is by now, in words.
     fn note(&self, _words: &str) {}
-    /// Whether the work is still wanted; asked between steps of long work, which ends in [`crate::RenderError::Stopped`]
-    /// if it is not.
+    /// Whether the work is still wanted; asked between passes and between pixels, rows or samples. If it is not, the work
+    /// ends in [`crate::RenderError::Stopped`]. Called from many threads.
     fn goes_on(&self) -> bool {
         true
     }

@@ -90,9 +90,9 @@ fn sixteen_against_many(scene: &mut Scene) -> [f32; 2] {
         ..Settings::default()
     };
     let mut lit = LitScene::new(&*scene, &settings, &Silent).expect("draws");
-    let few = lit.resolve(&scene.camera, &settings, &Silent);
+    let few = lit.resolve(&scene.camera, &settings, &Silent).expect("draws");
     settings.samples_per_pixel = 100;
-    difference(&few, &lit.resolve(&scene.camera, &settings, &Silent))
+    difference(&few, &lit.resolve(&scene.camera, &settings, &Silent).expect("draws"))
 }
 
 #[test]

@@ -86,7 +86,7 @@ fn transmission_equals_equation_16() {
             ..Settings::default()
         };
         let mut lit = LitScene::new(&scene, &settings, &Silent).expect("draws");
-        let frame = lit.resolve(&scene.camera, &settings, &Silent);
+        let frame = lit.resolve(&scene.camera, &settings, &Silent).expect("draws");
         let seen = frame.layers[0].pixels[5];
         for channel in 0..3 {
             let expected = equation_16(channel, f64::from(thickness_mm));

@@ -125,6 +125,9 @@ impl GpuScene {
                 Some(bvh) => Ambient::new(object, &prepared.atlas, charts, bvh, samples, seed, progress),
                 None => Ambient::open(charts),
             };
+            if !progress.goes_on() {
+                return Err(RenderError::Stopped.into());
+            }
             let (maps, more) =
                 ObjectMaps::new(gpu, passes, &self.shared, number, object, prepared, &ambient)?;
             self.surface_steps.push(passes.deform.step(gpu, self.posing.deformable(number), &maps.geometry));

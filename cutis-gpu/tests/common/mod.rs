@@ -8,6 +8,7 @@ use cutis_gpu::map::Map;
 use cutis_gpu::passes::Passes;
 use cutis_gpu::readback::read_layer;
 use cutis_gpu::{Adapters, Gpu, GpuError, GpuRenderer};
+use cutis_render::Settings;
 use cutis_scene::head::HeadDetail;
 use cutis_scene::validation::shapes;
 use cutis_scene::{Camera, Light, Material, Object, ReadOptions, Scene, read_scene, studio};
@@ -52,6 +53,18 @@ pub fn scanned_head(test: &str) -> Option<Scene> {
     let options = ReadOptions { assets_folder: Some(folder), ..ReadOptions::default() };
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/lee_perry_smith.toml");
     Some(read_scene(&file, &options).expect("the scene of the scan is valid"))
+}
+
+/// How frames are drawn that both backends draw.
+pub fn small_frame() -> Settings {
+    Settings {
+        width: 160,
+        height: 160,
+        irradiance_size: 512,
+        samples_per_pixel: 9,
+        shadow_samples: 16,
+        ..Settings::default()
+    }
 }
 
 /// A small built-in head in the studio, before a dark grey.

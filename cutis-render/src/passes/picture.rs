@@ -33,7 +33,9 @@ pub fn picture(resolve: &Resolve, camera: &Camera, settings: &Settings, progress
             let (left, top) = (t % columns * TILE, t / columns * TILE);
             let pixels = (top..(top + TILE).min(height))
                 .flat_map(|y| (left..(left + TILE).min(width)).map(move |x| (x as u32, y as u32)));
-            let samples = pixels.map(|(x, y)| lens.pixel(x, y)).collect();
+            // Of a picture that nobody wants any more, tiles are left empty.
+            let pixel = |(x, y)| if progress.goes_on() { lens.pixel(x, y) } else { lens.nothing() };
+            let samples = pixels.map(pixel).collect();
             progress.advance(1);
             samples
         })
@@ -84,6 +86,11 @@ impl<'a> Lens<'a> {
         }
     }
 
+    /// An empty pixel.
+    fn nothing(&self) -> Sample {
+        Sample { radiance: Vec4::ZERO, layers: vec![Vec4::ZERO; self.resolve.aovs.len()] }
+    }
+
     /// The mean of a pixel.
     fn pixel(&self, x: u32, y: u32) -> Sample {
         let eye_mm = self.eye_mm;
@@ -96,7 +103,7 @@ impl<'a> Lens<'a> {
         if let Some((hit, point)) = self.shared_point(&seen) {
             return self.resolve.shade(&hit, &point, (point.position_mm - eye_mm).normalize());
         }
-        let mut sum = Sample { radiance: Vec4::ZERO, layers: vec![Vec4::ZERO; self.resolve.aovs.len()] };
+        let mut sum = self.nothing();
         for (dir, hit) in &seen {
             let sample = match hit {
                 Some(hit) => self.resolve.shade(hit, &self.resolve.point(hit), *dir),

@@ -46,7 +46,7 @@ pub struct LitScene<S> {
 /// If a material cannot be turned into a kernel.
 pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Result<Frame, RenderError> {
     let mut lit = LitScene::new(scene, settings, progress)?;
-    let mut frame = lit.resolve(&scene.camera, settings, progress);
+    let mut frame = lit.resolve(&scene.camera, settings, progress)?;
     if settings.aov_space == AovSpace::Texture {
         frame.layers = settings.aovs.iter().filter_map(|&aov| lit.texture_layer(aov)).collect();
     }
@@ -74,6 +74,7 @@ impl<S: Deref<Target = Scene>> LitScene<S> {
             let pass =
                 ObjectPass { scene: &scene, settings, bvh: &bvh, environment: environment.as_ref(), object };
             maps.push(pass.run(size as usize, &mut clock, progress)?);
+            wanted(progress)?;
         }
         let bodies = Bodies { scene: &scene, bvh: &bvh, maps: &maps };
         let transmission = clock.time("transmission", || {
@@ -83,7 +84,15 @@ impl<S: Deref<Target = Scene>> LitScene<S> {
     }
 
     /// The final pass: a picture through a camera.
-    pub fn resolve(&mut self, camera: &Camera, settings: &Settings, progress: &dyn Progress) -> Frame {
+    ///
+    /// # Errors
+    /// Only [`RenderError::Stopped`].
+    pub fn resolve(
+        &mut self,
+        camera: &Camera,
+        settings: &Settings,
+        progress: &dyn Progress,
+    ) -> Result<Frame, RenderError> {
         let aovs: &[Aov] = if settings.aov_space == AovSpace::Picture { &settings.aovs } else { &[] };
         let environment = self.environment.as_ref();
         let resolve = Resolve {
@@ -94,7 +103,9 @@ impl<S: Deref<Target = Scene>> LitScene<S> {
             transmission: &self.transmission,
             aovs,
         };
-        self.clock.time("resolve", || picture(&resolve, camera, settings, progress))
+        let frame = self.clock.time("resolve", || picture(&resolve, camera, settings, progress));
+        wanted(progress)?;
+        Ok(frame)
     }
 
     /// Energy and seam error of every object.
@@ -187,9 +198,11 @@ impl ObjectPass<'_> {
         let ambient = clock.time("ambient occlusion", || {
             Ambient::new(object, &atlas, half_charts.halved(), self.bvh, samples, settings.seed, progress)
         });
+        wanted(progress)?;
         let opaque_mm = opaque_mm(&kernel);
         let rays = Rays { scene: self.scene, bvh: self.bvh, settings, opaque_mm };
         let half_size = clock.time("shadows", || HalfSize::new(rays, object, &atlas, &half_charts, progress));
+        wanted(progress)?;
         let inputs = IrradianceInputs {
             rays,
             object,
@@ -200,6 +213,7 @@ impl ObjectPass<'_> {
             rho_dt: &rho_dt,
         };
         let lit = clock.time("irradiance", || irradiance(&inputs, progress));
+        wanted(progress)?;
         let charts = Arc::clone(&atlas.charts);
         let fields = Fields::new(lit.layers, stretch_mm.clone());
         let diffused = clock.time("blur", || {
@@ -217,6 +231,11 @@ impl ObjectPass<'_> {
             rho_dt,
         })
     }
+}
+
+/// Ends the work if nobody wants it any more.
+fn wanted(progress: &dyn Progress) -> Result<(), RenderError> {
+    if progress.goes_on() { Ok(()) } else { Err(RenderError::Stopped) }
 }
 
 /// The kernel of a material under the diffusion operator of the settings.

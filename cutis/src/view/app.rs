@@ -1,6 +1,6 @@
 //! The window: takes in what the person does and what the painter has drawn, and asks for the next picture.
 
-use super::files::{Loading, dropped, write_look, write_picture};
+use super::files::{Loading, dropped, write_image, write_look, write_picture};
 use super::keys::{Command, command};
 use super::look::{Drawing, Look};
 use super::painter::{News, Painter, Wish};
@@ -102,6 +102,9 @@ impl Viewer {
         let size = CentralPanel::no_frame().show(ui, |ui| canvas::show(self, ui)).inner;
         help::show(ui.ctx(), &mut self.help);
         self.ask(size);
+        for side in 0..self.side_count() {
+            self.sides[side].develop(ui.ctx(), side, self.looks[side].developing(self.shown));
+        }
     }
 
     fn take_in(&mut self, context: &Context) {
@@ -111,8 +114,10 @@ impl Viewer {
         let dropped_paths = |input: &InputState| {
             input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect::<Vec<_>>()
         };
-        for path in context.input(dropped_paths) {
-            self.open(context, dropped(&path, &self.source));
+        let paths = context.input(dropped_paths);
+        if !paths.is_empty() {
+            let now = self.loading.as_ref().map_or(&self.source, |loading| &loading.source).clone();
+            self.open(context, paths.iter().fold(now, |source, path| dropped(path, &source)));
         }
         self.take_scene();
         self.turn();
@@ -122,17 +127,14 @@ impl Viewer {
     }
 
     fn take_news(&mut self, context: &Context, news: News) {
-        let current = self.asked.as_ref().map_or(0, |wish| wish.number);
         match news {
-            // A draft of what was wanted a moment ago is better than none while things move; another scene is not.
-            News::Painted(painted) if self.split.is_some() || painted.side == 0 => {
-                let (side, film) = (painted.side, self.looks[painted.side].film);
-                self.sides[side].show(context, side, *painted, &film);
+            // A picture of what was wanted a moment ago is better than none while things move; another scene is not.
+            News::Painted(painted) if Arc::ptr_eq(&painted.scene, &self.scene) => {
+                let side = painted.side;
+                self.sides[side].show(context, side, *painted);
             }
-            News::Failed { number, side, reason } if number == current => {
-                self.sides[side].failure = Some(reason);
-            }
-            News::Painted(_) | News::Failed { .. } => {}
+            News::Failed { number, side, reason } => self.sides[side].failure = Some((number, reason)),
+            News::Painted(_) => {}
         }
     }
 
@@ -146,16 +148,25 @@ impl Viewer {
         let Some(result) = self.loading.as_ref().and_then(Loading::done) else { return };
         let Some(loading) = self.loading.take() else { return };
         match result {
-            Ok(scene) => {
-                self.source = loading.source;
-                self.message = scene.warnings.first().map(|warning| format!("warning: {warning}"));
-                self.original = Look::of(&scene, self.looks[0].drawing.clone());
-                self.looks = [self.original.clone(), self.original.clone()];
-                (self.light, self.sides) = (0, [Side::default(), Side::default()]);
-                self.scene = Arc::new(scene);
-            }
+            Ok(scene) => self.enter(loading.source, scene),
             Err(reason) => self.message = Some(reason),
         }
+    }
+
+    /// Looks at another scene; where only its environment is another, the rest of both looks stays.
+    fn enter(&mut self, source: SceneSource, scene: Scene) {
+        self.end_turntable();
+        self.message = scene.warnings.first().map(|warning| format!("warning: {warning}"));
+        let is_another = source.file != self.source.file || self.looks[0].lights.len() != scene.lights.len();
+        // Gaussians of another kernel have other numbers.
+        let drawing = |look: &Look| Drawing { muted_gaussians: Vec::new(), ..look.drawing.clone() };
+        self.original = Look::of(&scene, drawing(&self.looks[0]));
+        if is_another {
+            self.looks = [0, 1].map(|side| Look::of(&scene, drawing(&self.looks[side])));
+            self.light = 0;
+        }
+        self.sides = [Side::default(), Side::default()];
+        (self.source, self.scene) = (source, Arc::new(scene));
     }
 
     fn take_keys(&mut self, context: &Context) {
@@ -210,14 +221,19 @@ impl Viewer {
         }
     }
 
-    /// Writes the picture that is seen to a file.
+    /// Writes what is seen of a side to a file, and says how good it is by now.
     pub fn write_picture(&mut self) {
         let Some(painted) = &self.sides[self.edited].painted else { return };
-        self.message =
-            Some(match write_picture(&self.folder, &painted.frame, &self.looks[self.edited].film) {
-                Ok(path) => format!("written: {}", path.display()),
-                Err(reason) => reason,
-            });
+        let written = match self.shown.view {
+            View::Picture if !self.shown.wireframe => {
+                write_picture(&self.folder, &painted.frame, &self.looks[self.edited].film)
+            }
+            _ => write_image(&self.folder, &painted.image),
+        };
+        self.message = Some(match written {
+            Ok(path) => format!("written: {} ({})", path.display(), painted.quality),
+            Err(reason) => reason,
+        });
     }
 
     /// Writes a scene file of what is seen.
@@ -248,17 +264,21 @@ impl Viewer {
 
     /// Goes on with a turn around the scene when its picture has been drawn.
     fn turn(&mut self) {
-        let settled = self.is_settled();
-        let (Some(turntable), Some(painted)) = (&mut self.turntable, &self.sides[0].painted) else { return };
+        let (settled, failed) = (self.is_settled(), self.failure(0).is_some());
+        let Some(turntable) = &mut self.turntable else { return };
+        // The turn alone moves the camera.
+        self.looks[0].camera = turntable.camera();
+        if failed {
+            self.end_turntable();
+            return;
+        }
+        let Some(painted) = &self.sides[0].painted else { return };
         if !settled || painted.camera != self.looks[0].camera {
             return;
         }
         match turntable.write(&painted.frame, &self.looks[0].film) {
-            Ok(Some(camera)) => {
-                self.looks[0].camera = camera;
-                self.message = Some(turntable.progress());
-            }
-            Ok(None) => self.end_turntable(),
+            Ok(()) if turntable.is_done() => self.end_turntable(),
+            Ok(()) => self.message = Some(turntable.progress()),
             Err(reason) => {
                 self.end_turntable();
                 self.message = Some(reason);
@@ -270,7 +290,7 @@ impl Viewer {
     fn ask(&mut self, size: [u32; 2]) {
         // Both sides look from one place.
         self.looks[1].camera = self.looks[0].camera;
-        let count = if self.split.is_some() { 2 } else { 1 };
+        let count = self.side_count();
         let wish = Wish {
             number: self.asked.as_ref().map_or(1, |wish| wish.number + 1),
             scene: Arc::clone(&self.scene),
@@ -288,11 +308,23 @@ impl Viewer {
     /// Whether everything that was asked for has been drawn as well as it can be, or cannot be drawn.
     pub fn is_settled(&self) -> bool {
         let Some(asked) = &self.asked else { return false };
-        let drawn = |side: &Side| {
-            let painted = side.painted.as_ref().is_some_and(|p| p.number == asked.number && p.is_final);
-            painted || side.failure.is_some()
+        let drawn = |side: usize| {
+            let painted = self.sides[side].painted.as_ref();
+            painted.is_some_and(|p| p.number == asked.number && p.is_final) || self.failure(side).is_some()
         };
-        self.loading.is_none() && self.sides[..asked.looks.len()].iter().all(drawn)
+        self.loading.is_none() && (0..asked.looks.len()).all(drawn)
+    }
+
+    /// Why a side shows nothing of what was asked for last.
+    pub fn failure(&self, side: usize) -> Option<&str> {
+        let asked = self.asked.as_ref()?.number;
+        let (number, reason) = self.sides[side].failure.as_ref()?;
+        (*number == asked).then_some(reason.as_str())
+    }
+
+    /// How many sides are shown.
+    pub fn side_count(&self) -> usize {
+        if self.split.is_some() { 2 } else { 1 }
     }
 }
 

@@ -12,7 +12,7 @@ use eframe::egui::{
 };
 
 /// Largest side of a picture, pixels.
-const MAX_PIXELS: u32 = 4096;
+const MAX_PIXELS: usize = 4096;
 /// Width of a tile, points.
 const TILE: f32 = 205.0;
 /// How close to the line between two sides the pointer takes hold of it, points.
@@ -23,13 +23,17 @@ const MARGIN: f32 = 8.0;
 /// Shows it. Gives the size that a picture should have, pixels.
 pub fn show(viewer: &mut Viewer, ui: &mut Ui) -> [u32; 2] {
     let rect = ui.available_rect_before_wrap();
-    let scale = ui.ctx().pixels_per_point();
-    let size = [rect.width(), rect.height()].map(|side| ((side * scale) as u32).clamp(1, MAX_PIXELS));
+    let pixels = rect.size() * ui.ctx().pixels_per_point();
+    // Both sides by the same factor: the picture keeps its shape.
+    let most = ui.input(|input| input.max_texture_side.min(MAX_PIXELS)) as f32;
+    let shrunk = pixels * (most / pixels.max_elem().max(1.0)).min(1.0);
+    let size = [shrunk.x, shrunk.y].map(|side| (side as u32).max(1));
     match viewer.shown.view {
         View::Maps => maps(viewer, ui),
         View::Map(aov) => map(viewer, ui, aov),
         View::Picture | View::Layer(_) => picture(viewer, ui, rect),
     }
+    tell_failure(viewer, &ui.painter_at(rect), rect);
     size
 }
 
@@ -52,7 +56,6 @@ fn picture(viewer: &mut Viewer, ui: &mut Ui, rect: Rect) {
     }
     tell_value(viewer, &response, &painter, line);
     tell_range(viewer, &painter, rect);
-    tell_failure(viewer, &painter, rect);
 }
 
 fn move_by(viewer: &mut Viewer, movement: Movement) {
@@ -118,13 +121,13 @@ fn tell_range(viewer: &Viewer, painter: &Painter, rect: Rect) {
 
 fn tell_failure(viewer: &Viewer, painter: &Painter, rect: Rect) {
     let mut place = rect.center();
-    for side in &viewer.sides {
-        if let Some(reason) = &side.failure {
-            words(painter, place, Align2::CENTER_CENTER, reason);
-            place.y += 2.0 * MARGIN;
-        }
+    let sides = 0..viewer.side_count();
+    for reason in sides.clone().filter_map(|side| viewer.failure(side)) {
+        words(painter, place, Align2::CENTER_CENTER, reason);
+        place.y += 3.0 * MARGIN;
     }
-    if viewer.sides.iter().all(|side| side.texture.is_none() && side.failure.is_none()) {
+    let nothing = |side: usize| viewer.sides[side].texture.is_none() && viewer.failure(side).is_none();
+    if sides.clone().all(nothing) {
         words(painter, place, Align2::CENTER_CENTER, "the first picture is being drawn …");
     }
 }
@@ -142,7 +145,9 @@ fn words(painter: &Painter, place: Pos2, align: Align2, text: &str) {
 fn maps(viewer: &mut Viewer, ui: &mut Ui) {
     let side = &viewer.sides[viewer.edited];
     if side.maps.is_empty() {
-        ui.centered_and_justified(|ui| ui.label("the maps of all passes are being drawn …"));
+        let is_final = side.painted.as_ref().is_some_and(|painted| painted.is_final);
+        let words = if is_final { "this technique has no maps" } else { "the maps are being drawn …" };
+        ui.centered_and_justified(|ui| ui.label(words));
         return;
     }
     let columns = ((ui.available_width() / (TILE + MARGIN)) as usize).max(1);

@@ -5,7 +5,7 @@ use crate::scene_source::SceneSource;
 use cutis_render::Frame;
 use cutis_render::film::{self, Film};
 use cutis_scene::{Scene, write_scene};
-use eframe::egui::Context;
+use eframe::egui::{ColorImage, Context};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, channel};
 
@@ -57,6 +57,19 @@ pub fn write_picture(folder: &Path, frame: &Frame, film: &Film) -> Result<PathBu
     let path = free_name(folder, "png")?;
     let format = film::check_output(&path, None).map_err(|error| error.to_string())?;
     film::write(&path, format, frame, film).map_err(|error| error.to_string())?;
+    Ok(path)
+}
+
+/// Writes what is on the screen, under the first free number.
+///
+/// # Errors
+/// In words, if it cannot be written.
+pub fn write_image(folder: &Path, image: &ColorImage) -> Result<PathBuf, String> {
+    let path = free_name(folder, "png")?;
+    let bytes: Vec<u8> = image.pixels.iter().flat_map(|p| [p.r(), p.g(), p.b()]).collect();
+    let [width, height] = image.size.map(|side| side as u32);
+    image::save_buffer(&path, &bytes, width, height, image::ExtendedColorType::Rgb8)
+        .map_err(|error| format!("{}: {error}", path.display()))?;
     Ok(path)
 }
 

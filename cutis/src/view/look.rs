@@ -1,5 +1,7 @@
 //! Everything that can be changed while looking: plain numbers, relative to the scene as it was read.
 
+use super::painter::Developing;
+use super::shown::Shown;
 use crate::backend::Backend;
 use cutis_render::film::Film;
 use cutis_render::prepare::kernel::stretched;
@@ -118,10 +120,11 @@ impl Look {
     /// If it cannot take the pose.
     pub fn applied_to(&self, scene: &Scene) -> Result<Scene, RenderError> {
         let mut scene = scene.clone();
+        // Lights turn about the middle of the scene as it was read: they do not follow a pose.
+        let middle_mm = scene.bounds_mm().map_or(Vec3::ZERO, |[lo, hi]| 0.5 * (lo + hi));
         if scene.pose() != self.pose {
             scene.set_pose(&self.pose).map_err(|error| bad_pose(&error))?;
         }
-        let middle_mm = scene.bounds_mm().map_or(Vec3::ZERO, |[lo, hi]| 0.5 * (lo + hi));
         scene.camera = self.camera;
         scene.lights = scene
             .lights
@@ -139,6 +142,16 @@ impl Look {
         scene.environment = scene.environment.filter(|_| self.surroundings.strength > 0.0);
         scene.objects.iter_mut().for_each(|object| self.skin.apply_to(&mut object.material));
         Ok(scene)
+    }
+
+    /// Whether everything but the film is the same, so that the frame need not be drawn anew.
+    pub fn is_drawn_like(&self, other: &Self) -> bool {
+        self.camera == other.camera && self.is_lit_like(other)
+    }
+
+    /// How an image is made of a frame.
+    pub fn developing(&self, shown: Shown) -> Developing {
+        Developing { film: self.film, shown, pose: self.pose.clone() }
     }
 
     /// Whether everything but camera and film is the same, so that light need not be gathered anew.
@@ -188,7 +201,7 @@ impl LightLook {
         light
     }
 
-    /// A direction from the middle of the scene, turned about the vertical axis and lifted, but not over the pole.
+    /// A direction from the middle of the scene, turned about the vertical axis and lifted.
     fn turned(&self, dir: Vec3) -> Vec3 {
         let around = Quat::from_rotation_y(self.turn_degrees.to_radians()) * dir;
         let aside = around.cross(Vec3::Y).normalize_or(Vec3::X);

@@ -21,7 +21,7 @@ pub enum Movement {
     Pan(Vec2),
     /// Nearer by a factor.
     Zoom(f32),
-    /// The first light.
+    /// The light that follows the mouse.
     Light(Vec2),
 }
 

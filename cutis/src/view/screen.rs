@@ -1,11 +1,11 @@
 //! From light to what a screen shows: the developed picture, layers in true or false colour, triangles over them.
 
-use super::look::Look;
-use super::shown::{Shown, View};
+use super::painter::Developing;
+use super::shown::View;
 use super::wireframe;
 use cutis_render::film::{Film, develop, linear_to_srgb};
 use cutis_render::{Aov, Frame, Layer};
-use cutis_scene::Scene;
+use cutis_scene::{Camera, Scene};
 use eframe::egui::{Color32, ColorImage};
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
@@ -18,13 +18,13 @@ const BEHIND: f32 = 0.02;
 const SCALE: [[u8; 3]; 5] = [[0, 0, 4], [81, 18, 124], [183, 55, 121], [252, 137, 97], [252, 253, 191]];
 
 /// What the camera sees, by the view that was chosen.
-pub fn picture(frame: &Frame, look: &Look, shown: &Shown, scene: &Scene) -> ColorImage {
-    let mut image = match (shown.view, frame.layers.first()) {
-        (View::Layer(aov), Some(layer)) => layer_image(layer, aov, &look.film),
-        _ => developed(frame, &look.film),
+pub fn picture(frame: &Frame, camera: &Camera, how: &Developing, scene: &Scene) -> ColorImage {
+    let mut image = match (how.shown.view, frame.layers.first()) {
+        (View::Layer(aov), Some(layer)) => layer_image(layer, aov, &how.film),
+        _ => developed(frame, &how.film),
     };
-    if shown.wireframe {
-        wireframe::draw_over(&mut image, scene, &look.camera);
+    if how.shown.wireframe {
+        wireframe::draw_over(&mut image, scene, &how.pose, camera);
     }
     image
 }
@@ -53,11 +53,19 @@ pub fn layer_image(layer: &Layer, aov: Aov, film: &Film) -> ColorImage {
     image([layer.width, layer.height], layer.pixels.par_iter().map(pixel).collect())
 }
 
-/// What the ends of the scale of a layer stand for: the least and the greatest of the first channel's numbers that are not 0.
+/// What the ends of the scale of a layer stand for: of the first channel's numbers above 0, a hundredth lies below and a
+/// hundredth above them.
 pub fn range(layer: &Layer) -> [f32; 2] {
-    let values = layer.pixels.iter().map(|p| p.x).filter(|x| x.is_finite() && *x > 0.0);
-    let [low, high] = values.fold([f32::INFINITY, 0.0f32], |[low, high], x| [low.min(x), high.max(x)]);
-    if low <= high { [low, high] } else { [0.0, 1.0] }
+    let mut values: Vec<f32> =
+        layer.pixels.iter().map(|p| p.x).filter(|x| x.is_finite() && *x > 0.0).collect();
+    if values.is_empty() {
+        return [0.0, 1.0];
+    }
+    let mut at = |share: f32| {
+        let place = (share * (values.len() - 1) as f32) as usize;
+        *values.select_nth_unstable_by(place, f32::total_cmp).1
+    };
+    [at(0.01), at(0.99)]
 }
 
 /// A place of the scale of colours, 0 to 1.
@@ -105,7 +113,8 @@ mod tests {
             let [r, g, b, _] = on_scale(share).to_array().map(f32::from);
             0.21 * r + 0.72 * g + 0.07 * b
         };
-        (0..100).for_each(|i| assert!(lightness(i as f32 / 100.0) < lightness((i + 1) as f32 / 100.0) + 1.0));
+        (0..100).for_each(|i| assert!(lightness(i as f32 / 100.0) <= lightness((i + 1) as f32 / 100.0)));
+        assert!(lightness(1.0) > lightness(0.0) + 200.0);
         assert_eq!(on_scale(f32::NAN), on_scale(0.0));
     }
 

@@ -1,7 +1,7 @@
 //! One side of the window: what was drawn last, as textures for the screen.
 
-use super::painter::Painted;
-use super::screen::layer_image;
+use super::painter::{Developing, Painted};
+use super::screen::{layer_image, picture};
 use super::shown::unit;
 use cutis_render::film::Film;
 use cutis_render::{Aov, Layer};
@@ -21,8 +21,8 @@ pub struct Side {
     /// Textures of the passes, small.
     pub maps: Vec<Tile>,
     full: Option<(Aov, TextureHandle)>,
-    /// Why there is no new picture.
-    pub failure: Option<String>,
+    /// Number of the wish that could not be fulfilled, and why.
+    pub failure: Option<(u64, String)>,
 }
 
 /// A texture of a pass on the screen.
@@ -36,8 +36,16 @@ pub struct Tile {
 }
 
 impl Side {
+    /// Develops the frame that is there anew, where only that has changed.
+    pub fn develop(&mut self, context: &Context, number: usize, how: Developing) {
+        let Some(painted) = self.painted.as_ref().filter(|painted| painted.look != how) else { return };
+        let image = picture(&painted.frame, &painted.camera, &how, &painted.scene);
+        self.show(context, number, Painted { image, look: how, ..painted.clone() });
+    }
+
     /// Takes in a new picture.
-    pub fn show(&mut self, context: &Context, number: usize, painted: Painted, film: &Film) {
+    pub fn show(&mut self, context: &Context, number: usize, painted: Painted) {
+        let film = &painted.look.film;
         let image = painted.image.clone();
         match &mut self.texture {
             Some(texture) => texture.set(image, TextureOptions::LINEAR),
@@ -111,7 +119,8 @@ fn smaller(layer: &Layer) -> Layer {
     let [width, height] = [layer.width, layer.height].map(|side| side.div_ceil(step));
     let texels =
         (0..height).flat_map(|y| (0..width).map(move |x| (y * step * layer.width + x * step) as usize));
-    Layer { width, height, pixels: texels.map(|i| layer.pixels[i]).collect(), ..layer.clone() }
+    let pixels = texels.map(|i| layer.pixels[i]).collect();
+    Layer { name: layer.name.clone(), width, height, channels: layer.channels.clone(), pixels }
 }
 
 #[cfg(test)]

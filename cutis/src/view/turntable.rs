@@ -32,20 +32,25 @@ impl Turntable {
         Ok(Self { pictures, done: 0, start, folder })
     }
 
-    /// Writes the picture of the step that the turn is at and goes on. Gives the camera of the next one, none after the last.
+    /// Writes the picture of the step that the turn is at and goes on.
     ///
     /// # Errors
     /// In words, if it cannot be written.
-    pub fn write(&mut self, frame: &Frame, film: &Film) -> Result<Option<Camera>, String> {
+    pub fn write(&mut self, frame: &Frame, film: &Film) -> Result<(), String> {
         let path = self.folder.join(format!("{:04}.png", self.done + 1));
         let format = film::check_output(&path, None).map_err(|error| error.to_string())?;
         film::write(&path, format, frame, film).map_err(|error| error.to_string())?;
         self.done += 1;
-        Ok((self.done < self.pictures).then(|| self.camera()))
+        Ok(())
+    }
+
+    /// Whether all pictures are written.
+    pub fn is_done(&self) -> bool {
+        self.done >= self.pictures
     }
 
     /// The camera of the step that the turn is at.
-    fn camera(&self) -> Camera {
+    pub fn camera(&self) -> Camera {
         let mut camera = self.start;
         orbit(&mut camera, Vec2::new(TAU * self.done as f32 / self.pictures as f32, 0.0));
         camera

@@ -1,6 +1,6 @@
 //! The triangles of the scene over a picture: edges that face the eye and are not hidden.
 
-use cutis_scene::{Camera, Scene};
+use cutis_scene::{Camera, Mesh, Pose, Scene};
 use eframe::egui::{Color32, ColorImage};
 use glam::{Vec2, Vec3};
 
@@ -11,24 +11,23 @@ const SLACK: f32 = 2e-3;
 /// Nearest depth, mm.
 const NEAR_MM: f32 = 0.1;
 
-/// Draws the edges.
-pub fn draw_over(image: &mut ColorImage, scene: &Scene, camera: &Camera) {
+/// Draws the edges of a scene in a pose.
+pub fn draw_over(image: &mut ColorImage, scene: &Scene, pose: &Pose, camera: &Camera) {
+    let moved =
+        (scene.pose() != *pose).then(|| scene.objects.iter().map(|object| object.deformed(pose)).collect());
+    let meshes: Vec<Mesh> = moved.unwrap_or_else(|| scene.objects.iter().map(|o| o.mesh.clone()).collect());
     let lens = Lens::new(camera, image.size);
     let mut depths_mm = vec![f32::INFINITY; image.pixels.len()];
-    let seen: Vec<Vec<Option<Vec3>>> = scene
-        .objects
-        .iter()
-        .map(|object| object.mesh.positions_mm.iter().map(|&p| lens.place(p)).collect())
-        .collect();
+    let seen: Vec<Vec<Option<Vec3>>> =
+        meshes.iter().map(|mesh| mesh.positions_mm.iter().map(|&p| lens.place(p)).collect()).collect();
     let facing = |places: &[Option<Vec3>], triangle: &[u32; 3]| {
         let corners = triangle.map(|v| places[v as usize]);
         let [Some(a), Some(b), Some(c)] = corners else { return None };
         ((b - a).truncate().perp_dot((c - a).truncate()) < 0.0).then_some([a, b, c])
     };
     let triangles = || {
-        let of_object = scene.objects.iter().zip(&seen);
-        of_object
-            .flat_map(|(object, places)| object.mesh.triangles.iter().filter_map(move |t| facing(places, t)))
+        let of_object = meshes.iter().zip(&seen);
+        of_object.flat_map(|(mesh, places)| mesh.triangles.iter().filter_map(move |t| facing(places, t)))
     };
     triangles().for_each(|corners| fill(corners, image.size, &mut depths_mm));
     for [a, b, c] in triangles() {
@@ -102,7 +101,7 @@ fn line([a, b]: [Vec3; 2], image: &mut ColorImage, depths_mm: &[f32]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cutis_scene::{Material, Mesh, Object};
+    use cutis_scene::{Material, Object};
 
     /// A triangle in the plane z = `depth`, wound so that it faces +z.
     fn triangle(depth: f32, size: f32) -> Object {
@@ -136,7 +135,7 @@ mod tests {
             warnings: Vec::new(),
         };
         let mut image = ColorImage::filled([64, 64], Color32::BLACK);
-        draw_over(&mut image, &scene, &camera);
+        draw_over(&mut image, &scene, &Pose::default(), &camera);
         image.pixels.iter().filter(|&&p| p == EDGE).count()
     }
 

@@ -1,7 +1,7 @@
 //! Draws one side of the window, and keeps what the next picture of it can be drawn from.
 
 use super::on_cpu::OnCpu;
-use super::on_gpu::{Device, OnGpu};
+use super::on_gpu::{Devices, OnGpu};
 use super::stage::Stage;
 use super::watch::Watch;
 use super::{Desk, Painted, Wish, Work};
@@ -43,13 +43,15 @@ pub struct Subject<'a> {
     pub settings: Settings,
     /// Whether the textures of the passes are wanted.
     pub wants_maps: bool,
+    /// Whether nothing better will follow.
+    pub is_best: bool,
 }
 
 impl Artist {
     /// Draws a look of a wish. None if something else is wanted by now.
     pub fn paint(
         &mut self,
-        device: &mut Device,
+        devices: &mut Devices,
         wish: &Wish,
         side: usize,
         stage: Stage,
@@ -65,7 +67,9 @@ impl Artist {
             camera: look.camera,
             quality,
             is_final,
-            image: screen::picture(&drawn.frame, look, &wish.shown, &wish.scene),
+            image: screen::picture(&drawn.frame, &look.camera, &look.developing(wish.shown), &wish.scene),
+            look: look.developing(wish.shown),
+            scene: Arc::clone(&wish.scene),
             maps: Arc::new(drawn.maps),
             machine: drawn.machine,
             work: drawn.work,
@@ -76,9 +80,15 @@ impl Artist {
             let machine = CpuRenderer.adapter();
             finish(Drawn { frame, maps: Vec::new(), machine, work: None }, quality, false)
         };
-        let watch = Watch::new(desk, &preview);
-        let subject = Subject { scene: &wish.scene, look, settings, wants_maps: wish.shown.wants_maps() };
-        match self.draw(device, &subject, &watch) {
+        let watch = Watch::new(desk, stage != Stage::Draft, &preview);
+        let subject = Subject {
+            scene: &wish.scene,
+            look,
+            settings,
+            wants_maps: wish.shown.wants_maps(),
+            is_best: stage == Stage::Fine,
+        };
+        match self.draw(devices, &subject, &watch) {
             Ok(drawn) => Ok(Some(finish(drawn, stage.name().to_owned(), stage == Stage::Fine))),
             Err(RenderError::Stopped) => Ok(None),
             Err(error) => Err(error.to_string()),
@@ -86,13 +96,18 @@ impl Artist {
     }
 
     /// On the machine that was chosen; `auto` goes from a graphics processor that fails to the processor.
-    fn draw(&mut self, device: &mut Device, subject: &Subject, watch: &Watch) -> Result<Drawn, RenderError> {
+    fn draw(
+        &mut self,
+        devices: &mut Devices,
+        subject: &Subject,
+        watch: &Watch,
+    ) -> Result<Drawn, RenderError> {
         let technique = subject.look.drawing.technique;
         let backend = subject.look.drawing.backend;
         if backend == Backend::Cpu || (backend == Backend::Auto && !GpuRenderer::knows(technique)) {
             return self.cpu.draw(subject, watch);
         }
-        match self.gpu.draw(device, subject, watch) {
+        match self.gpu.draw(devices, subject, watch) {
             Ok(drawn) => Ok(drawn),
             Err(RenderError::Backend { reason }) if backend == Backend::Auto => {
                 let mut drawn = self.cpu.draw(subject, watch)?;

@@ -11,13 +11,13 @@ use super::mailbox::Mailbox;
 use super::shown::Shown;
 use artist::Artist;
 use cutis_gpu::cost::Cost;
+use cutis_render::film::Film;
 use cutis_render::{Frame, Layer};
-use cutis_scene::{Camera, Scene};
+use cutis_scene::{Camera, Pose, Scene};
 use eframe::egui;
-use on_gpu::Device;
+use on_gpu::Devices;
 use stage::Stage;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::JoinHandle;
 use std::time::Duration;
 
 /// What is to be drawn.
@@ -38,12 +38,13 @@ pub struct Wish {
 }
 
 impl Wish {
-    /// Whether it asks for the same picture.
+    /// Whether it asks for the same frames; how they are developed is another matter.
     pub fn is_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.scene, &other.scene)
-            && self.looks == other.looks
+            && self.looks.len() == other.looks.len()
+            && self.looks.iter().zip(&other.looks).all(|(a, b)| a.is_drawn_like(b))
             && self.size == other.size
-            && self.shown == other.shown
+            && self.shown.view == other.shown.view
             && self.is_for_a_file == other.is_for_a_file
     }
 }
@@ -61,8 +62,12 @@ pub struct Painted {
     pub quality: String,
     /// Whether nothing better will come.
     pub is_final: bool,
+    /// What it shows.
+    pub scene: Arc<Scene>,
     /// Ready for the screen.
     pub image: egui::ColorImage,
+    /// How the image was made of the frame.
+    pub look: Developing,
     /// The light of it, with times and warnings.
     pub frame: Arc<Frame>,
     /// Textures of the passes, where they are shown.
@@ -73,6 +78,17 @@ pub struct Painted {
     pub work: Option<Work>,
     /// How long it took.
     pub time: Duration,
+}
+
+/// How an image is made of a frame: none of it needs new light.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Developing {
+    /// Exposure, bloom, tone mapper.
+    pub film: Film,
+    /// What is to be seen of the frame.
+    pub shown: Shown,
+    /// The pose of the triangles drawn over it.
+    pub pose: Pose,
 }
 
 /// What a frame costs a graphics adapter.
@@ -105,7 +121,6 @@ pub enum News {
 pub struct Painter {
     wishes: Arc<Mailbox<Wish>>,
     news: Arc<Mutex<Vec<News>>>,
-    thread: Option<JoinHandle<()>>,
 }
 
 impl Painter {
@@ -113,8 +128,8 @@ impl Painter {
     pub fn start(context: egui::Context) -> std::io::Result<Self> {
         let (wishes, news) = (Arc::new(Mailbox::default()), Arc::new(Mutex::new(Vec::new())));
         let desk = Desk { wishes: Arc::clone(&wishes), news: Arc::clone(&news), context };
-        let thread = std::thread::Builder::new().name("painter".to_owned()).spawn(move || work(&desk))?;
-        Ok(Self { wishes, news, thread: Some(thread) })
+        std::thread::Builder::new().name("painter".to_owned()).spawn(move || work(&desk))?;
+        Ok(Self { wishes, news })
     }
 
     /// Asks for a picture; whatever was asked before is forgotten.
@@ -128,13 +143,10 @@ impl Painter {
     }
 }
 
+/// The thread ends by itself when it finds the mailbox closed; nobody waits for it.
 impl Drop for Painter {
     fn drop(&mut self) {
         self.wishes.close();
-        if let Some(thread) = self.thread.take() {
-            // It has told its own end; there is nobody left to be told.
-            let _ = thread.join();
-        }
     }
 }
 
@@ -171,7 +183,7 @@ fn work(desk: &Desk) {
 /// Where it is drawn: each side keeps what its next picture can be drawn from.
 #[derive(Default)]
 struct Studio {
-    device: Device,
+    devices: Devices,
     sides: [Artist; 2],
 }
 
@@ -181,14 +193,15 @@ impl Studio {
         let mut failed = [false; 2];
         for stage in Stage::ALL {
             for (side, look) in wish.looks.iter().enumerate() {
-                if desk.wishes.has_news() {
+                // Drafts of both sides belong together: they look from one place.
+                if stage != Stage::Draft && desk.wishes.has_news() {
                     return;
                 }
                 let is_skipped = wish.is_for_a_file && stage != Stage::Fine;
                 if failed[side] || is_skipped || !stage.is_for(look.drawing.technique) {
                     continue;
                 }
-                match self.sides[side].paint(&mut self.device, wish, side, stage, desk) {
+                match self.sides[side].paint(&mut self.devices, wish, side, stage, desk) {
                     Ok(Some(painted)) => desk.tell(News::Painted(Box::new(painted))),
                     Ok(None) => return,
                     Err(reason) => {

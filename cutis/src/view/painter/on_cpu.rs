@@ -20,6 +20,7 @@ struct Kept {
     look: Look,
     irradiance_size: u32,
     shadow_samples: u32,
+    warnings: Vec<String>,
     lit: LitScene<Arc<Scene>>,
 }
 
@@ -36,6 +37,7 @@ impl Kept {
         let Settings { irradiance_size, shadow_samples, .. } = subject.settings;
         let scene = Arc::new(subject.look.applied_to(subject.scene)?);
         Ok(Self {
+            warnings: warnings(&scene),
             lit: LitScene::new(scene, &subject.settings, watch)?,
             scene: Arc::clone(subject.scene),
             look: subject.look.clone(),
@@ -52,16 +54,16 @@ impl OnCpu {
             return from_nothing(&CpuRenderer, subject, watch);
         }
         subject.settings.check()?;
-        let mut kept = match self.kept.take().filter(|kept| kept.serves(subject)) {
-            Some(kept) => kept,
-            None => Kept::new(subject, watch)?,
-        };
-        let mut frame = kept.lit.resolve(&subject.look.camera, &subject.settings, watch);
+        if !self.kept.as_ref().is_some_and(|kept| kept.serves(subject)) {
+            // What is there stays until the better light is: while things move a draft needs it.
+            self.kept = Some(Kept::new(subject, watch)?);
+        }
+        let Some(kept) = &mut self.kept else { return Err(RenderError::EmptyScene) };
+        let mut frame = kept.lit.resolve(&subject.look.camera, &subject.settings, watch)?;
         frame.passes = kept.lit.take_passes();
-        frame.warnings = warnings(subject.scene);
+        frame.warnings.clone_from(&kept.warnings);
         let wanted = texture_maps().filter(|_| subject.wants_maps);
         let maps = wanted.filter_map(|aov| kept.lit.texture_layer(aov)).collect();
-        self.kept = Some(kept);
         Ok(Drawn { frame, maps, machine: CpuRenderer.adapter(), work: None })
     }
 }

@@ -14,24 +14,30 @@ use cutis_render::{AovSpace, Frame, Progress, RenderError, Renderer, Settings};
 use cutis_scene::Scene;
 use std::sync::Arc;
 
-/// The open device, for all sides.
+/// The open devices, for all sides: one for each kind of adapter, or why there is none.
 #[derive(Default)]
-pub struct Device {
-    open: Option<(Adapters, Arc<GpuRenderer>)>,
+pub struct Devices {
+    hardware: Option<Result<Arc<GpuRenderer>, GpuError>>,
+    any: Option<Result<Arc<GpuRenderer>, GpuError>>,
 }
 
-impl Device {
+impl Devices {
     /// The renderer on the adapter that a backend means.
-    fn renderer(&mut self, backend: Backend) -> Result<Arc<GpuRenderer>, RenderError> {
-        let adapters = if backend == Backend::Gpu { Adapters::Any } else { Adapters::Hardware };
-        if let Some((kind, renderer)) = &self.open
-            && *kind == adapters
-        {
-            return Ok(Arc::clone(renderer));
+    fn renderer(&mut self, backend: Backend) -> Result<Arc<GpuRenderer>, GpuError> {
+        let (open, adapters) = match backend {
+            Backend::Gpu => (&mut self.any, Adapters::Any),
+            _ => (&mut self.hardware, Adapters::Hardware),
+        };
+        open.get_or_insert_with(|| GpuRenderer::new(adapters).map(Arc::new)).clone()
+    }
+
+    /// A device that gave up is opened anew the next time.
+    fn forget(&mut self, renderer: &Arc<GpuRenderer>) {
+        for open in [&mut self.hardware, &mut self.any] {
+            if matches!(open, Some(Ok(one)) if Arc::ptr_eq(one, renderer)) {
+                *open = None;
+            }
         }
-        let renderer = Arc::new(GpuRenderer::new(adapters).map_err(|error| because(&error))?);
-        self.open = Some((adapters, Arc::clone(&renderer)));
-        Ok(renderer)
     }
 }
 
@@ -52,12 +58,14 @@ struct Kept {
 }
 
 impl Kept {
-    /// Better light than is asked for is welcome, and poses are taken by the device. Every place of a light's disc that is
-    /// tried costs the same in every frame, so that there are enough of them from the first.
+    /// Better light than is asked for is welcome, and poses are taken by the device. Shadows are the
+    /// same at every stage: the device tries enough places of a light's disc from the first. What rays find, and the device
+    /// cannot, is found anew for the best picture of a pose.
     fn serves(&self, renderer: &Arc<GpuRenderer>, subject: &Subject) -> bool {
         Arc::ptr_eq(&self.renderer, renderer)
             && Arc::ptr_eq(&self.scene, subject.scene)
             && self.look.is_lit_like(&Look { pose: self.look.pose.clone(), ..subject.look.clone() })
+            && (!subject.is_best || self.uploaded.pose() == subject.look.pose)
             && self.settings.irradiance_size >= subject.settings.irradiance_size
     }
 }
@@ -69,17 +77,24 @@ impl OnGpu {
     /// `RenderError::Backend` if the adapter is what stands in the way.
     pub fn draw(
         &mut self,
-        device: &mut Device,
+        devices: &mut Devices,
         subject: &Subject,
         watch: &Watch,
     ) -> Result<Drawn, RenderError> {
-        let renderer = device.renderer(subject.look.drawing.backend)?;
-        let result = self.draw_with(&renderer, subject, watch);
-        if matches!(result, Err(RenderError::Backend { .. })) {
-            // A device that gave up is opened anew the next time.
-            (device.open, self.kept) = (None, None);
-        }
-        result
+        let renderer = devices.renderer(subject.look.drawing.backend).map_err(|error| because(&error))?;
+        self.draw_with(&renderer, subject, watch).map_err(|error| match error {
+            SceneError::Render(error) => error,
+            SceneError::Gpu(error) => {
+                if matches!(
+                    error,
+                    GpuError::Lost { .. } | GpuError::OutOfMemory { .. } | GpuError::Refused { .. }
+                ) {
+                    devices.forget(&renderer);
+                    self.kept = None;
+                }
+                because(&error)
+            }
+        })
     }
 
     fn draw_with(
@@ -87,51 +102,46 @@ impl OnGpu {
         renderer: &Arc<GpuRenderer>,
         subject: &Subject,
         watch: &Watch,
-    ) -> Result<Drawn, RenderError> {
+    ) -> Result<Drawn, SceneError> {
         let Subject { look, settings, scene, .. } = subject;
-        let mut kept = match self.kept.take().filter(|kept| kept.serves(renderer, subject)) {
-            Some(kept) => kept,
-            None => {
-                settings.check()?;
-                let uploaded = look.applied_to(scene)?;
-                let ready = renderer.scene(&uploaded, settings, watch).map_err(|error| match error {
-                    SceneError::Render(error) => error,
-                    SceneError::Gpu(error) => because(&error),
-                })?;
-                Kept {
-                    renderer: Arc::clone(renderer),
-                    scene: Arc::clone(scene),
-                    look: (*look).clone(),
-                    settings: settings.clone(),
-                    uploaded,
-                    ready,
-                }
-            }
-        };
-        if !watch.goes_on() {
-            self.kept = Some(kept);
-            return Err(RenderError::Stopped);
+        if !self.kept.as_ref().is_some_and(|kept| kept.serves(renderer, subject)) {
+            settings.check().map_err(SceneError::Render)?;
+            let uploaded = look.applied_to(scene)?;
+            let shadow_samples = Settings::default().shadow_samples;
+            let settings = &Settings { shadow_samples, ..settings.clone() };
+            // What is there stays until the better light is: while things move a draft needs it.
+            let ready = renderer.scene(&uploaded, settings, watch)?;
+            self.kept = Some(Kept {
+                renderer: Arc::clone(renderer),
+                scene: Arc::clone(scene),
+                look: (*look).clone(),
+                settings: settings.clone(),
+                uploaded,
+                ready,
+            });
         }
+        if !watch.goes_on() {
+            return Err(RenderError::Stopped.into());
+        }
+        let Some(kept) = &mut self.kept else { return Err(RenderError::EmptyScene.into()) };
         if kept.look.pose != look.pose {
             let posed = kept.ready.set_pose(&renderer.gpu, &kept.uploaded, &look.pose);
             posed.map_err(|error| bad_pose(&error))?;
             kept.look.pose = look.pose.clone();
         }
-        kept.ready.set_picture(&renderer.gpu, &renderer.passes, settings).map_err(|error| because(&error))?;
+        kept.ready.set_picture(&renderer.gpu, &renderer.passes, settings)?;
         kept.ready.set_camera(&renderer.gpu, &look.camera);
-        let drawn = Self::frame(renderer, &kept.ready, subject).map_err(|error| because(&error))?;
-        self.kept = Some(kept);
-        Ok(drawn)
+        Ok(Self::frame(renderer, kept, subject)?)
     }
 
-    fn frame(renderer: &GpuRenderer, ready: &GpuScene, subject: &Subject) -> Result<Drawn, GpuError> {
-        let settings = &subject.settings;
+    fn frame(renderer: &GpuRenderer, kept: &Kept, subject: &Subject) -> Result<Drawn, GpuError> {
+        let (settings, ready) = (&subject.settings, &kept.ready);
         let passes = ready.look_timed(&renderer.gpu)?;
         let pixels = ready.picture(&renderer.gpu)?;
         let layers = ready.layers(&renderer.gpu, &renderer.passes, &settings.aovs, AovSpace::Picture)?;
         let wanted: Vec<_> = texture_maps().filter(|_| subject.wants_maps).collect();
         let maps = ready.layers(&renderer.gpu, &renderer.passes, &wanted, AovSpace::Texture)?;
-        let mut told = warnings(subject.scene);
+        let mut told = warnings(&kept.uploaded);
         told.extend(ready.shared.warnings.iter().cloned());
         let frame = Frame {
             width: settings.width,

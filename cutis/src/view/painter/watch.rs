@@ -11,6 +11,8 @@ const BETWEEN_PICTURES: Duration = Duration::from_millis(700);
 /// Watches one picture.
 pub struct Watch<'a> {
     desk: &'a Desk,
+    /// Whether it may end unfinished.
+    may_stop: bool,
     /// Makes news of a frame and the words that tell how good it is.
     finish: &'a (dyn Fn(Frame, String) -> Painted + Sync),
     state: Mutex<State>,
@@ -23,9 +25,19 @@ struct State {
 }
 
 impl<'a> Watch<'a> {
-    /// Of a picture that `finish` makes news of.
-    pub fn new(desk: &'a Desk, finish: &'a (dyn Fn(Frame, String) -> Painted + Sync)) -> Self {
-        Self { desk, finish, state: Mutex::new(State { last_picture: Instant::now(), steps: 0, done: 0 }) }
+    /// Of a picture that `finish` makes news of. Drafts are drawn to their end: while something moves there would be nothing to
+    /// see otherwise.
+    pub fn new(
+        desk: &'a Desk,
+        may_stop: bool,
+        finish: &'a (dyn Fn(Frame, String) -> Painted + Sync),
+    ) -> Self {
+        Self {
+            desk,
+            may_stop,
+            finish,
+            state: Mutex::new(State { last_picture: Instant::now(), steps: 0, done: 0 }),
+        }
     }
 
     fn with_state<T>(&self, work: impl FnOnce(&mut State) -> T) -> T {
@@ -43,7 +55,7 @@ impl Progress for Watch<'_> {
     }
 
     fn goes_on(&self) -> bool {
-        !self.desk.wishes.has_news()
+        !self.may_stop || !self.desk.wishes.has_news()
     }
 
     fn preview(&self, picture: &dyn Fn() -> Frame) {

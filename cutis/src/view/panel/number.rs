@@ -1,6 +1,6 @@
 //! A number that can be changed: slider, unit, and the way back.
 
-use eframe::egui::{Slider, Ui};
+use eframe::egui::{Slider, SliderClamping, Ui};
 use std::ops::RangeInclusive;
 
 /// What a slider is about.
@@ -27,7 +27,11 @@ impl Number {
             if back.on_hover_text(format!("back to {:.3}: {}", self.original, self.name)).clicked() {
                 *value = self.original;
             }
-            let slider = Slider::new(value, self.range).logarithmic(self.is_logarithmic).text(self.name);
+            // A scene may hold more than the slider reaches; only what a person moves is held to its range.
+            let slider = Slider::new(value, self.range)
+                .clamping(SliderClamping::Edits)
+                .logarithmic(self.is_logarithmic)
+                .text(self.name);
             ui.add(slider.max_decimals(3)).on_hover_text(self.hint);
         });
     }

@@ -2,7 +2,7 @@
 
 use cutis_render::prepare::Kernel;
 use eframe::egui::{Color32, Ui};
-use egui_plot::{Legend, Line, Plot, PlotPoints};
+use egui_plot::{Legend, Line, Plot, PlotPoints, uniform_grid_spacer};
 use std::f32::consts::TAU;
 
 /// Points of a curve.
@@ -22,6 +22,7 @@ pub fn show(ui: &mut Ui, kernel: &Kernel) {
     Plot::new("profile")
         .height(150.0)
         .legend(Legend::default())
+        .x_grid_spacer(uniform_grid_spacer(|_| [10.0, 1.0, 0.5]))
         .x_axis_label("r [mm]")
         .y_axis_label("2πr R(r) [1/mm]")
         .allow_scroll(false)
@@ -33,7 +34,8 @@ pub fn show(ui: &mut Ui, kernel: &Kernel) {
         .show(ui, |plot| {
             for (c, (name, colour)) in CHANNELS.into_iter().enumerate() {
                 let point = |i: usize| {
-                    let r_mm = reach_mm * i as f32 / POINTS as f32;
+                    // Closer together at the centre, where the narrowest Gaussian peaks.
+                    let r_mm = reach_mm * (i as f32 / POINTS as f32).powi(2);
                     [f64::from(r_mm), f64::from(ring_per_mm(kernel, c, r_mm))]
                 };
                 let points: PlotPoints = (0..=POINTS).map(point).collect();

@@ -13,6 +13,7 @@ pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
     let (look, original) = (&mut viewer.looks[viewer.edited], &viewer.original);
     let skin = &mut look.skin;
     let own = "the scene's own";
+    let before = skin.preset.clone();
     ComboBox::from_label("material").selected_text(skin.preset.as_deref().unwrap_or(own)).show_ui(ui, |ui| {
         ui.selectable_value(&mut skin.preset, None, own);
         for preset in presets::all() {
@@ -20,6 +21,10 @@ pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
                 .on_hover_text(preset.source);
         }
     });
+    if skin.preset != before {
+        // Gaussians of another kernel have other numbers.
+        look.drawing.muted_gaussians.clear();
+    }
     free_path(&mut skin.free_path, ui);
     factor("× roughness", "factor on Beckmann's roughness m", 0.2..=3.0).show(ui, &mut skin.roughness);
     let hint = "factor on the specular intensity rho_s: 0 dry, 1 as it is, more is oily";

@@ -54,7 +54,7 @@ pub fn settle(window: &mut Window) {
     let start = Instant::now();
     window.step();
     while !window.state().is_settled() {
-        assert!(start.elapsed() < PATIENCE, "no picture: {:?}", window.state().sides[0].failure);
+        assert!(start.elapsed() < PATIENCE, "no picture: {:?}", window.state().failure(0));
         std::thread::sleep(Duration::from_millis(5));
         window.step();
     }

@@ -9,11 +9,20 @@ use eframe::egui::{Key, Modifiers, PointerButton, Vec2, pos2, vec2};
 use egui_kittest::kittest::Queryable;
 
 const SIZE: [f32; 2] = [640.0, 420.0];
+/// A scene that is read and drawn at once.
+const TRIANGLE: &str = "v 0 0 0\nv 10 0 0\nv 0 10 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
 
 /// The picture on the screen, as bytes.
 fn pixels(window: &super::drive::Window) -> Vec<u8> {
     let painted = window.state().sides[0].painted.as_ref().expect("something is drawn");
     painted.image.pixels.iter().flat_map(|p| p.to_array()).collect()
+}
+
+/// Fails without a flood of bytes.
+fn assert_same(got: &[u8], expected: &[u8], what: &str) {
+    assert_eq!(got.len(), expected.len(), "{what}: another size");
+    let off = got.iter().zip(expected).filter(|(a, b)| a != b).count();
+    assert_eq!(off, 0, "{what}: bytes differ");
 }
 
 #[test]
@@ -34,10 +43,10 @@ fn the_head_is_drawn_and_turns_with_the_mouse() {
         assert_ne!(window.state().looks[0].camera, camera, "{button:?} {modifiers:?}");
     }
     settle(&mut window);
-    assert_ne!(pixels(&window), before);
+    assert!(pixels(&window) != before, "nothing has changed");
     window.state_mut().looks[0].camera = camera;
     settle(&mut window);
-    assert_eq!(pixels(&window), before, "back where it was, the picture is what it was");
+    assert_same(&pixels(&window), &before, "back where it was");
 }
 
 #[test]
@@ -49,7 +58,7 @@ fn shift_moves_the_light_and_not_the_camera() {
     assert_eq!(window.state().looks[0].camera, look.camera);
     assert_ne!(window.state().looks[0].lights, look.lights);
     settle(&mut window);
-    assert_ne!(pixels(&window), before);
+    assert!(pixels(&window) != before, "nothing has changed");
 }
 
 #[test]
@@ -61,7 +70,8 @@ fn every_view_is_drawn_and_tells_its_values() {
         settle(&mut window);
         assert_eq!(window.state().shown.view, view);
         let side = &window.state().sides[0];
-        assert!(side.failure.is_none(), "{view:?}: {:?}", side.failure);
+        let failure = window.state().failure(0);
+        assert!(failure.is_none(), "{view:?}: {failure:?}");
         match view {
             View::Maps => {
                 assert_eq!(side.maps.len(), 10, "irradiance, stretch, six levels, thickness, charts")
@@ -110,13 +120,13 @@ fn every_preset_is_drawn_and_the_panel_resets() {
         window.state_mut().looks[0].skin.preset = Some(preset.to_owned());
         window.state_mut().looks[0].skin.free_path = [2.0, 1.0, 0.5];
         settle(&mut window);
-        assert!(window.state().sides[0].failure.is_none());
-        assert_ne!(pixels(&window), before, "{preset}");
+        assert!(window.state().failure(0).is_none());
+        assert!(pixels(&window) != before, "{preset}");
     }
     let original = window.state().original.clone();
     window.state_mut().looks[0] = original;
     settle(&mut window);
-    assert_eq!(pixels(&window), before);
+    assert_same(&pixels(&window), &before, "the picture");
 }
 
 #[test]
@@ -161,16 +171,59 @@ fn what_is_dropped_is_opened_or_refused_in_words() {
         let told = message(&mut window);
         assert!(told.contains(name), "{name}: {told}");
         settle(&mut window);
-        assert_eq!(pixels(&window), before, "{name}: what was there stays");
+        assert_same(&pixels(&window), &before, name);
     }
-    let triangle = "v 0 0 0\nv 10 0 0\nv 0 10 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
     let path = folder.path().join("triangle.obj");
-    std::fs::write(&path, triangle).expect("is written");
+    std::fs::write(&path, TRIANGLE).expect("is written");
     drop_file(&mut window, &path);
     message(&mut window);
     settle(&mut window);
     assert_eq!(window.state().scene.objects[0].mesh.triangles.len(), 1);
-    assert_ne!(pixels(&window), before);
+    assert!(pixels(&window) != before, "nothing has changed");
+}
+
+#[test]
+fn no_picture_of_the_scene_before_is_shown_for_the_next() {
+    let mut window = window(SIZE, Backend::Cpu);
+    // The head's picture is under way when another scene comes.
+    window.step();
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("triangle.obj");
+    std::fs::write(&path, TRIANGLE).expect("is written");
+    drop_file(&mut window, &path);
+    message(&mut window);
+    let start = std::time::Instant::now();
+    while !window.state().is_settled() {
+        assert!(start.elapsed().as_secs() < 120, "no picture");
+        window.step();
+        let side = &window.state().sides[0];
+        let shown = side.painted.as_ref().map(|p| p.scene.objects[0].mesh.triangles.len());
+        assert!(shown.is_none_or(|triangles| triangles == 1), "{shown:?} triangles are shown");
+    }
+}
+
+#[test]
+fn a_film_needs_no_new_light_and_a_failure_is_of_its_wish() {
+    let mut window = window(SIZE, Backend::Cpu);
+    settle(&mut window);
+    let (before, frame) = (pixels(&window), window.state().sides[0].painted.clone().expect("is drawn").frame);
+    window.state_mut().looks[0].film.exposure_ev += 1.0;
+    press(&mut window, Key::W);
+    settle(&mut window);
+    let after = window.state().sides[0].painted.clone().expect("is drawn");
+    assert!(std::sync::Arc::ptr_eq(&frame, &after.frame), "the frame is the same");
+    assert!(pixels(&window) != before, "nothing has changed");
+    // More than a slider reaches is kept.
+    window.state_mut().looks[0].film.exposure_ev = 10.0;
+    settle(&mut window);
+    assert_eq!(window.state().looks[0].film.exposure_ev, 10.0);
+    window.state_mut().looks[0].skin.preset = Some("no such".to_owned());
+    settle(&mut window);
+    assert!(window.state().failure(0).is_some_and(|reason| reason.contains("no such")));
+    window.state_mut().looks[0].skin.preset = None;
+    window.step();
+    assert!(window.state().failure(0).is_none() && !window.state().is_settled());
+    settle(&mut window);
 }
 
 #[test]
@@ -217,11 +270,11 @@ fn a_wave_moves_what_is_seen_and_rest_is_rest() {
         let before = pixels(&window);
         window.state_mut().looks[0].pose.wave = Some(Wave::sideways(10.0, 90.0, 0.5));
         settle(&mut window);
-        assert!(window.state().sides[0].failure.is_none(), "{:?}", window.state().sides[0].failure);
-        assert_ne!(pixels(&window), before, "{backend}");
+        assert!(window.state().failure(0).is_none(), "{:?}", window.state().failure(0));
+        assert!(pixels(&window) != before, "{backend}");
         window.state_mut().looks[0].pose.wave = None;
         settle(&mut window);
-        assert_eq!(pixels(&window), before, "{backend}");
+        assert_same(&pixels(&window), &before, &backend.to_string());
     }
 }
 
@@ -276,7 +329,7 @@ fn a_window_of_one_point_and_back() {
     }
     window.set_size(Vec2::from(SIZE));
     settle(&mut window);
-    assert_eq!(pixels(&window), before);
+    assert_same(&pixels(&window), &before, "the picture");
 }
 
 #[test]

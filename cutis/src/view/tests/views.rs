@@ -139,7 +139,7 @@ fn two_looks_are_compared_and_the_truth_refines() {
     assert_eq!(window.state().looks[1].drawing.technique, cutis_render::TechniqueName::Truth);
     assert_eq!(window.state().looks[0].drawing.technique, cutis_render::TechniqueName::TextureSpace);
     let refined = |window: &super::drive::Window| {
-        window.state().sides[1].painted.as_ref().is_some_and(|p| p.quality.contains("samples"))
+        window.state().sides[1].painted.as_ref().is_some_and(|p| p.quality.ends_with("of 4096 samples"))
     };
     let start = std::time::Instant::now();
     while !refined(&window) {

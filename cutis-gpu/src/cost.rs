@@ -22,7 +22,7 @@ pub struct Cost {
 
 /// Reads of textures by one invocation of every entry point but those of vertices, counted in its source: one light, as many
 /// Gaussians as skin has at a size, loops as long as for most texels.
-pub const TAPS: [(&str, u64); 22] = [
+pub const TAPS: [(&str, u64); 21] = [
     ("deform_vertices", 0),
     ("stretch_at_vertices", 0),
     ("unroll", 2),
@@ -36,10 +36,9 @@ pub const TAPS: [(&str, u64); 22] = [
     ("blur_by_fours", 10),
     ("blur_by_eights", 18),
     ("halve", 9),
-    ("gather_texel", 5),
-    ("gather", 12),
-    ("mark_thin", 288),
-    ("transmit", 80),
+    ("gather", 40),
+    ("mark_thin", 176),
+    ("transmit", 130),
     ("smooth_map", 51),
     ("shade", 36),
     ("show", 44),

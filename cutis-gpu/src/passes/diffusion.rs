@@ -114,17 +114,17 @@ impl DiffusionPass {
     }
 
     /// The steps that fill all levels but the first, from that one. `charts` are those of the first size and of every halved
-    /// one; `actions` those that the levels were made for.
+    /// one; `actions` those that the levels were made for. What `half_way` holds, as many layers as a level has, is lost.
     pub fn steps(
         &self,
         gpu: &Gpu,
         charts: &[ChartTexture],
         levels: &Levels,
-        stretch: &Map,
+        (stretch, half_way): (&Map, &Map),
         actions: &[Action],
         texel_mm: f32,
     ) -> Diffusion {
-        let mut way = Way::new(self, gpu, charts, levels, stretch, texel_mm);
+        let mut way = Way::new(self, gpu, charts, levels, (stretch, half_way), texel_mm);
         for &action in actions {
             match action {
                 Action::Halve => way.halve(),
@@ -174,6 +174,8 @@ struct Way<'a> {
     texel_mm: f32,
     light: Map,
     stretch: Map,
+    /// Where blurred stretch goes in turn.
+    stretches: [Map; 2],
     /// Light blurred along u only.
     half_way: Map,
     taps: Vec<Step>,
@@ -186,13 +188,13 @@ impl<'a> Way<'a> {
         gpu: &'a Gpu,
         charts: &'a [ChartTexture],
         levels: &'a Levels,
-        stretch: &Map,
+        (stretch, half_way): (&Map, &Map),
         texel_mm: f32,
     ) -> Self {
-        let light = levels.all[0].light.clone();
         Self {
-            half_way: same_layers(gpu, "blurred light", charts[0].size, &light),
-            light,
+            half_way: half_way.clone(),
+            light: levels.all[0].light.clone(),
+            stretches: pair(gpu, charts[0].size),
             levels,
             level: 0,
             texel_mm,
@@ -215,16 +217,23 @@ impl<'a> Way<'a> {
         self.halvings += 1;
         self.texel_mm *= 2.0;
         let size = self.charts().size;
-        self.half_way = same_layers(self.gpu, "blurred light", size, &self.light);
-        let light = same_layers(self.gpu, "halved light", size, &self.light);
+        self.half_way = like_level(self.gpu, "blurred light", size, &self.light);
+        let light = like_level(self.gpu, "halved light", size, &self.light);
         for (layer, target) in (0..).zip(&light.layers) {
             let halved = Halved { layer, factor: 1.0, ..Halved::zeroed() };
             self.blurs.push(self.halved(&self.pass.halve_light, fine, halved, &self.light, target));
         }
-        let stretch = Map::square(self.gpu, "stretch", size, 1, PAIR);
+        self.stretches = pair(self.gpu, size);
+        let stretch = self.next_stretch();
         let halved = Halved { factor: 2.0, ..Halved::zeroed() };
         self.taps.push(self.halved(&self.pass.halve_stretch, fine, halved, &self.stretch, stretch.view()));
         (self.light, self.stretch) = (light, stretch);
+    }
+
+    /// The map that does not hold the stretch now.
+    fn next_stretch(&mut self) -> Map {
+        self.stretches.swap(0, 1);
+        self.stretches[0].clone()
     }
 
     fn halved(
@@ -279,7 +288,7 @@ impl<'a> Way<'a> {
     fn lay_taps(&mut self, widening: blur::Widening, axis: u32) -> Map {
         let size = self.charts().size;
         let variances = Map::square(self.gpu, "variances", size, 1, PAIR);
-        let stretch = Map::square(self.gpu, "stretch", size, 1, PAIR);
+        let stretch = self.next_stretch();
         let numbers = self.gpu.uniform("widening", &numbers(widening, axis));
         let bound = [
             (1, Bound::Buffer(&numbers)),
@@ -294,7 +303,12 @@ impl<'a> Way<'a> {
     }
 }
 
-fn same_layers(gpu: &Gpu, label: &str, size: u32, like: &Map) -> Map {
+fn pair(gpu: &Gpu, size: u32) -> [Map; 2] {
+    [(); 2].map(|()| Map::square(gpu, "stretch", size, 1, PAIR))
+}
+
+/// A map of `size` texels with as many layers as a level.
+pub fn like_level(gpu: &Gpu, label: &str, size: u32, like: &Map) -> Map {
     Map::square(gpu, label, size, like.layers.len() as u32, Format::Rgba16Float)
 }
 

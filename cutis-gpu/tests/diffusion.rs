@@ -45,7 +45,7 @@ fn diffuse_on_gpu(
         let half = charts[charts.len() - 1].halved();
         charts.push(Arc::new(half));
     }
-    let textures = ChartPyramid::new(gpu, &atlas.charts, charts.len() - 1).sizes;
+    let textures = ChartPyramid::new(gpu, &atlas.charts, charts.len()).sizes;
     let levels = Levels::new(gpu, &textures, 1, &plan);
     levels.all[0].light.write(gpu, 0, &half_bytes(light.iter().copied()));
     let stretch = stretch_mm.iter().map(|s| s.extend(0.0).extend(0.0));

@@ -131,7 +131,7 @@ fn structs_of_the_passes_match_wgsl() {
         "Widening",
         [from_mm2, to_mm2, saved_texel2, unit_variance, weights, axis, pad0, pad1, pad2]
     );
-    same_layout!(Along, shaders::BLUR, "Along", [step_texels, pad0, pad1]);
+    same_layout!(Along, shaders::BLUR, "Along", [step_texels, axis, pad0]);
     same_layout!(Halved, shaders::HALVE, "Halved", [layer, factor, pad0, pad1]);
     for shader in [shaders::GATHER, shaders::TRANSMISSION] {
         same_layout!(LevelSize, shader, "LevelSize", [halvings, end, finer_halvings, finer_layer]);

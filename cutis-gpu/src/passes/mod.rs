@@ -60,8 +60,8 @@ pub struct Passes {
 impl Passes {
     /// Compiles all of them.
     pub fn new(gpu: &Gpu) -> Self {
+        let samplers = Samplers::new(gpu);
         Self {
-            samplers: Samplers::new(gpu),
             deform: deform::DeformPass::new(gpu),
             stretch: stretch::StretchPass::new(gpu),
             atlas: atlas::AtlasPass::new(gpu),
@@ -69,11 +69,12 @@ impl Passes {
             visibility: visibility::VisibilityPass::new(gpu),
             irradiance: irradiance::IrradiancePass::new(gpu),
             shares: shares::SharesPass::new(gpu),
-            diffusion: diffusion::DiffusionPass::new(gpu),
+            diffusion: diffusion::DiffusionPass::new(gpu, &samplers),
             gather: gather::GatherPass::new(gpu),
             transmission: transmission::TransmissionPass::new(gpu),
             resolve: resolve::ResolvePass::new(gpu),
             downsample: downsample::DownsamplePass::new(gpu),
+            samplers,
         }
     }
 }
@@ -81,6 +82,8 @@ impl Passes {
 /// The ways in which textures are read.
 #[derive(Debug)]
 pub struct Samplers {
+    /// The nearest texel; the edge goes on outside.
+    pub nearest: wgpu::Sampler,
     /// Bilinear; the edge goes on outside.
     pub linear: wgpu::Sampler,
     /// Bilinear; repeats.
@@ -92,21 +95,23 @@ pub struct Samplers {
 impl Samplers {
     fn new(gpu: &Gpu) -> Self {
         use wgpu::{AddressMode, FilterMode};
-        let sampler = |label, u, v| {
+        let sampler = |label, filter, u, v| {
             gpu.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some(label),
                 address_mode_u: u,
                 address_mode_v: v,
-                mag_filter: FilterMode::Linear,
-                min_filter: FilterMode::Linear,
+                mag_filter: filter,
+                min_filter: filter,
                 ..wgpu::SamplerDescriptor::default()
             })
         };
         let (clamp, repeat) = (AddressMode::ClampToEdge, AddressMode::Repeat);
+        let linear = FilterMode::Linear;
         Self {
-            linear: sampler("linear", clamp, clamp),
-            repeating: sampler("repeating", repeat, repeat),
-            around_sky: sampler("around the sky", repeat, clamp),
+            nearest: sampler("nearest", FilterMode::Nearest, clamp, clamp),
+            linear: sampler("linear", linear, clamp, clamp),
+            repeating: sampler("repeating", linear, repeat, repeat),
+            around_sky: sampler("around the sky", linear, repeat, clamp),
         }
     }
 }

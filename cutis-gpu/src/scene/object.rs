@@ -67,7 +67,8 @@ pub struct ObjectMaps {
     pub levels: Levels,
     /// Fraction of each light that is seen.
     pub visibility: Map,
-    /// Sum of all Gaussians.
+    /// Sum of all Gaussians, in the first layer. Before, light on its way passes through here: distances, and what is blurred
+    /// along u only.
     pub local: Map,
     /// Light that came through, at half the size.
     pub transmission: Map,
@@ -119,13 +120,14 @@ impl ObjectMaps {
             (&surface, &charts.sizes[0]),
             &atlas,
         ));
+        let levels = Levels::new(gpu, &charts.sizes, light_layers(shared), &plan);
         let mut maps = Self {
             visibility: visibility_map(gpu, size, shared.light_count),
-            local: Map::square(gpu, "local", size, 1, Format::Rgba16Float),
+            local: like_level(gpu, "local", size, &levels.all[0].light),
             transmission: Map::square(gpu, "transmission", size / 2, 1, Format::Rgba16Float),
             ambient: ambient_texture(gpu, ambient),
             rho_dt: rho_dt_texture(gpu, &rho_dt),
-            levels: Levels::new(gpu, &charts.sizes, light_layers(shared), &plan),
+            levels,
             geometry,
             kernel,
             atlas,
@@ -196,11 +198,10 @@ impl Lighting<'_> {
         let groups = shared.light_count.div_ceil(LIGHTS_TOGETHER) as u32;
         let many = shared.light_count > 1;
         let light = &maps.levels.all[0].light;
-        let half_way = like_level(gpu, "blurred light", size, light);
         // With several lights all distances live in further layers of the light, and this stays empty. One light's are read
         // before anything is blurred.
         let empty = || Map::square(gpu, "no distance", 1, 1, Format::Rgba16Float);
-        let distances = if many { empty() } else { half_way.clone() };
+        let distances = if many { empty() } else { maps.local.clone() };
         for group in 0..groups {
             let target = if many { &light.layers[1 + group as usize] } else { distances.view() };
             steps.push(self.visibility(group, target));
@@ -227,7 +228,7 @@ impl Lighting<'_> {
             }));
             shares
         });
-        let (charts, maps_between) = (&maps.charts.sizes, (&maps.atlas.stretch, &half_way));
+        let (charts, maps_between) = (&maps.charts.sizes, (&maps.atlas.stretch, &maps.local));
         let diffusion = passes.diffusion.steps(gpu, charts, &maps.levels, maps_between, plan, texel_mm);
         steps.extend(diffusion.blurs);
         all.surface.extend(diffusion.taps);
@@ -263,9 +264,10 @@ fn light_layers(shared: &Shared) -> u32 {
     if many { 1 + shared.light_count.div_ceil(LIGHTS_TOGETHER) as u32 } else { 1 }
 }
 
-/// How often charts are halved: for the plan, and for the map of occlusion.
+/// How often charts are halved: for the plan and once more for its stretch, and for the map of occlusion.
 fn halvings(plan: &[Action]) -> usize {
-    plan.iter().filter(|action| **action == Action::Halve).count().max(AMBIENT_HALVINGS)
+    let of_light = plan.iter().filter(|action| **action == Action::Halve).count();
+    (of_light + 1).max(AMBIENT_HALVINGS)
 }
 
 fn ambient_texture(gpu: &Gpu, ambient: &Ambient) -> Map {

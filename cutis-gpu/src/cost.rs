@@ -22,7 +22,7 @@ pub struct Cost {
 
 /// Reads of textures by one invocation of every entry point but those of vertices, counted in its source: one light, as many
 /// Gaussians as skin has at a size, loops as long as for most texels.
-pub const TAPS: [(&str, u64); 21] = [
+pub const TAPS: [(&str, u64); 19] = [
     ("deform_vertices", 0),
     ("stretch_at_vertices", 0),
     ("unroll", 2),
@@ -32,9 +32,7 @@ pub const TAPS: [(&str, u64); 21] = [
     ("light_texel", 19),
     ("share_lights", 6),
     ("lay_taps", 15),
-    ("blur_by_twos", 7),
-    ("blur_by_fours", 11),
-    ("blur_by_eights", 19),
+    ("blur", 11),
     ("halve", 9),
     ("gather", 40),
     ("mark_thin", 176),

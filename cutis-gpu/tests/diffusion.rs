@@ -51,7 +51,7 @@ fn diffuse_on_gpu(
     let stretch = stretch_mm.iter().map(|s| s.extend(0.0).extend(0.0));
     let stretch = Map::of_values(gpu, "stretch", [size, size], stretch);
     let half_way = like_level(gpu, "blurred light", size, &levels.all[0].light);
-    let diffusion = passes.diffusion.steps(gpu, &textures, &levels, (&stretch, &half_way), &plan, texel_mm);
+    let diffusion = passes.diffusion.steps(gpu, &textures, &levels, (&stretch, &half_way), &plan);
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     diffusion.taps.iter().chain(&diffusion.blurs).for_each(|step| step.encode(&mut encoder, None));
     gpu.queue.submit([encoder.finish()]);

@@ -178,7 +178,6 @@ fn constants_match_wgsl() {
         (shaders::TAPS, "NARROW_TEXEL2", NARROW_TEXEL2),
         (shaders::TRANSMISSION, "FADE_DEVIATIONS", f64::from(FADE_DEVIATIONS)),
         (shaders::TRANSMISSION, "VISIBLE", f64::from(VISIBLE)),
-        (shaders::TAPS, "DEVIATIONS", constant(shaders::BLUR, "DEVIATIONS")),
         (shaders::RESOLVE, "LEVEL", f64::from(LayerKind::Level as u32)),
         (shaders::RESOLVE, "DISTANCES", f64::from(LayerKind::Distances as u32)),
         (shaders::RESOLVE, "DISTANCE_OF_ONE", f64::from(LayerKind::DistanceOfOne as u32)),

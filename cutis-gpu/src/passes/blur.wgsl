@@ -19,7 +19,7 @@ struct Along {
     pad0: u32,
 }
 
-/// Deviations that are taken in; also in `taps.wgsl`.
+/// Deviations that are taken in; `taps.wgsl` makes up for what lies beyond.
 const DEVIATIONS: f32 = 3.3;
 
 /// What has been read so far. Either side has half of the light, and half of the centre is its own.
@@ -75,44 +75,15 @@ fn together(sides: Sides) -> vec4f {
     return sides.ahead * (0.5 / sides.whole.x) + sides.behind * (0.5 / sides.whole.y);
 }
 
-// Three forms of one loop, which differ only in how much is read between two looks whether it is enough.
-
 @fragment
-fn blur_by_twos(@builtin(position) position: vec4f) -> @location(0) vec4f {
+fn blur(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var read = sides(position.xy);
     var d = 1;
+    // One look whether it is enough for two distances.
     loop {
         read = two_more(read, d);
         continuing {
             d += 2;
-            break if d > read.farthest;
-        }
-    }
-    return together(read);
-}
-
-@fragment
-fn blur_by_fours(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    var read = sides(position.xy);
-    var d = 1;
-    loop {
-        read = two_more(two_more(read, d), d + 2);
-        continuing {
-            d += 4;
-            break if d > read.farthest;
-        }
-    }
-    return together(read);
-}
-
-@fragment
-fn blur_by_eights(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    var read = sides(position.xy);
-    var d = 1;
-    loop {
-        read = two_more(two_more(two_more(two_more(read, d), d + 2), d + 4), d + 6);
-        continuing {
-            d += 8;
             break if d > read.farthest;
         }
     }

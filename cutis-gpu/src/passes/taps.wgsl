@@ -32,9 +32,7 @@ struct Laid {
 
 const VARIANCES: u32 = 512u;
 const NARROW_TEXEL2: f32 = 1.0;
-/// Deviations that `blur.wgsl` takes in.
-const DEVIATIONS: f32 = 3.3;
-/// What that leaves out, as a share of the variance, on the mean.
+/// What `blur.wgsl` leaves out, as a share of the variance, on the mean.
 const LEFT_OUT: f32 = 0.005;
 /// Variance in texel² below which a sampled Gaussian has noticeably less of it than its formula says.
 const UNDERSAMPLED_TEXEL2: f32 = 0.6;

@@ -135,7 +135,7 @@ impl ObjectMaps {
             material,
         };
         let light = Lighting { gpu, passes, shared, number, maps: &maps };
-        let shares = light.steps((&plan, texel_mm), &mut steps);
+        let shares = light.steps(&plan, &mut steps);
         let gather = passes.gather.step(gpu, &maps.kernel, &maps.levels, &maps.charts, maps.local.view());
         steps.light.push(gather);
         let inputs = TransmissionInputs {
@@ -190,8 +190,8 @@ struct Lighting<'a> {
 }
 
 impl Lighting<'_> {
-    /// Adds its steps by a plan for texels of a width in mm. Gives each light's share, where there are several.
-    fn steps(&self, (plan, texel_mm): (&[Action], f32), all: &mut ObjectSteps) -> Option<Map> {
+    /// Adds its steps by a plan. Gives each light's share, where there are several.
+    fn steps(&self, plan: &[Action], all: &mut ObjectSteps) -> Option<Map> {
         let steps = &mut all.light;
         let Self { gpu, passes, shared, maps, .. } = *self;
         let size = maps.charts.sizes[0].size;
@@ -229,7 +229,7 @@ impl Lighting<'_> {
             shares
         });
         let (charts, maps_between) = (&maps.charts.sizes, (&maps.atlas.stretch, &maps.local));
-        let diffusion = passes.diffusion.steps(gpu, charts, &maps.levels, maps_between, plan, texel_mm);
+        let diffusion = passes.diffusion.steps(gpu, charts, &maps.levels, maps_between, plan);
         steps.extend(diffusion.blurs);
         all.surface.extend(diffusion.taps);
         shares

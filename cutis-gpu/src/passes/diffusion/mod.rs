@@ -24,10 +24,6 @@ const PAIR: Format = Format::Rg16Float;
 
 /// Variance in texel² up to which light stays in its texel: half as much of it, 2 %, would reach each neighbour.
 const STAYS_TEXEL2: f32 = 0.04;
-/// Distances to either side that a blur takes in at once, and that few texels go beyond: going round again costs most.
-const AT_ONCE: [f32; 3] = [2.0, 4.0, 8.0];
-/// Deviations that are taken in; also in the shaders.
-const DEVIATIONS: f32 = 3.3;
 
 /// How one step widens along one axis; the twin of `Widening` in `taps.wgsl`.
 #[repr(C)]
@@ -83,8 +79,7 @@ pub struct Halved {
 #[derive(Debug)]
 pub struct DiffusionPass {
     taps: Pipeline,
-    /// By how many distances they take in at once: see [`AT_ONCE`].
-    blurs: [Pipeline; 3],
+    blur: Pipeline,
     halve_light: Pipeline,
     halve_stretch: Pipeline,
     narrow: wgpu::Buffer,
@@ -110,8 +105,7 @@ impl DiffusionPass {
         let light = &[Format::Rgba16Float];
         Self {
             taps: pipeline("taps", shaders::TAPS, "lay_taps", &[PAIR, PAIR]),
-            blurs: ["blur_by_twos", "blur_by_fours", "blur_by_eights"]
-                .map(|entry| pipeline("blur", shaders::BLUR, entry, light)),
+            blur: pipeline("blur", shaders::BLUR, "blur", light),
             halve_light: pipeline("blur", shaders::HALVE, "halve", light),
             halve_stretch: pipeline("taps", shaders::HALVE, "halve", &[PAIR]),
             narrow: gpu.storage("discrete variances", &TAPS.narrow),
@@ -128,9 +122,8 @@ impl DiffusionPass {
         levels: &Levels,
         (stretch, half_way): (&Map, &Map),
         actions: &[Action],
-        texel_mm: f32,
     ) -> Diffusion {
-        let mut way = Way::new(self, gpu, charts, levels, (stretch, half_way), texel_mm);
+        let mut way = Way::new(self, gpu, charts, levels, (stretch, half_way));
         for &action in actions {
             match action {
                 Action::Halve => way.halve(),

@@ -1,6 +1,6 @@
 //! A plan on its way from step to step.
 
-use super::{AT_ONCE, Along, DEVIATIONS, DiffusionPass, Halved, PAIR, Widening};
+use super::{Along, DiffusionPass, Halved, PAIR, Widening};
 use crate::Gpu;
 use crate::map::{Map, View};
 use crate::passes::levels::Levels;
@@ -22,8 +22,6 @@ pub struct Way<'a> {
     halvings: usize,
     /// Number of the level that was kept last.
     pub level: usize,
-    /// Width of most texels, mm.
-    texel_mm: f32,
     light: Map,
     stretch: Map,
     /// Where blurred stretch goes in turn.
@@ -44,7 +42,6 @@ impl<'a> Way<'a> {
         charts: &'a [ChartTexture],
         levels: &'a Levels,
         (stretch, half_way): (&Map, &Map),
-        texel_mm: f32,
     ) -> Self {
         let mut way = Self {
             half_way: half_way.clone(),
@@ -52,7 +49,6 @@ impl<'a> Way<'a> {
             stretches: pair(gpu, charts[1].size),
             levels,
             level: 0,
-            texel_mm,
             stretch: stretch.clone(),
             taps: Vec::new(),
             blurs: Vec::new(),
@@ -77,7 +73,6 @@ impl<'a> Way<'a> {
     /// Moves everything on to half the size.
     pub fn halve(&mut self) {
         self.halvings += 1;
-        self.texel_mm *= 2.0;
         let size = self.charts().size;
         self.half_way = like_level(self.gpu, "blurred light", size, &self.light);
         let light = like_level(self.gpu, "halved light", size, &self.light);
@@ -131,18 +126,9 @@ impl<'a> Way<'a> {
         self.blur(widening, 1, self.levels.all[self.level + 1].light.clone());
     }
 
-    /// The pipeline that takes in most texels at once.
-    fn pipeline(&self, widening: blur::Widening) -> &'a Pipeline {
-        let variance_mm2 = widening.to_mm2 - widening.from_mm2;
-        let farthest = DEVIATIONS * variance_mm2.max(0.0).sqrt() / self.texel_mm + 0.5;
-        let fits = AT_ONCE.iter().position(|&taps| farthest < taps + 1.0).unwrap_or(AT_ONCE.len() - 1);
-        &self.pass.blurs[fits]
-    }
-
     fn blur(&mut self, widening: blur::Widening, axis: u32, target: Map) {
         let variances = self.lay_taps(widening, axis);
         let step_texels = if axis == 0 { [1.0, 0.0] } else { [0.0, 1.0] };
-        let pipeline = self.pipeline(widening);
         let numbers = self.gpu.uniform("along", &Along { step_texels, axis, ..Along::zeroed() });
         for (source, target) in self.light.layers.iter().zip(&target.layers) {
             let bound = [
@@ -152,7 +138,7 @@ impl<'a> Way<'a> {
                 (4, Bound::Texture(self.charts().map.view())),
                 (5, Bound::Sampler(&self.pass.nearest)),
             ];
-            self.blurs.push(over_charts(self.gpu, pipeline, self.charts(), &bound, &[target], false));
+            self.blurs.push(over_charts(self.gpu, &self.pass.blur, self.charts(), &bound, &[target], false));
         }
         self.light = target;
     }

@@ -22,11 +22,13 @@ pub struct Cost {
 
 /// Reads of textures by one invocation of every entry point but those of vertices, counted in its source: one light, as many
 /// Gaussians as skin has at a size, loops as long as for most texels.
-pub const TAPS: [(&str, u64); 19] = [
+pub const TAPS: [(&str, u64); 21] = [
     ("deform_vertices", 0),
     ("stretch_at_vertices", 0),
     ("unroll", 2),
     ("map_surface", 0),
+    ("add_openness", 60),
+    ("smooth_openness", 51),
     ("see_lights", 96),
     ("see_sharp_lights", 12),
     ("light_texel", 19),

@@ -20,6 +20,15 @@ pub const ATLAS: &str = wgsl!(
 /// Pass `shadow map`.
 pub const SHADOW: &str =
     wgsl!("lib/mesh.wgsl", "lib/lights.wgsl", "lib/light_map.wgsl", "passes/shadow.wgsl");
+/// Pass `openness`.
+pub const OPENNESS: &str = wgsl!(
+    "lib/tiles.wgsl",
+    "lib/charts.wgsl",
+    "lib/packing.wgsl",
+    "lib/lights.wgsl",
+    "lib/light_map.wgsl",
+    "passes/openness.wgsl"
+);
 /// Pass `shadows`.
 pub const VISIBILITY: &str = wgsl!(
     "lib/tiles.wgsl",
@@ -96,11 +105,12 @@ pub const SKY: &str = wgsl!("lib/mesh.wgsl", "lib/camera.wgsl", "lib/environment
 pub const DOWNSAMPLE: &str = wgsl!("passes/downsample.wgsl");
 
 /// All of them by name.
-pub const ALL: [(&str, &str); 16] = [
+pub const ALL: [(&str, &str); 17] = [
     ("deform", DEFORM),
     ("stretch", STRETCH),
     ("atlas", ATLAS),
     ("shadow", SHADOW),
+    ("openness", OPENNESS),
     ("visibility", VISIBILITY),
     ("irradiance", IRRADIANCE),
     ("shares", SHARES),

@@ -4,6 +4,7 @@ use cutis_gpu::passes::diffusion::{Along, Halved, Widening};
 use cutis_gpu::passes::downsample::Pixels;
 use cutis_gpu::passes::gather::{Gaussian, Gaussians};
 use cutis_gpu::passes::levels::{LevelSize, MAX_GAUSSIANS, MAX_SIZES};
+use cutis_gpu::passes::openness::{self, Batch};
 use cutis_gpu::passes::resolve::{LayerKind, Wanted};
 use cutis_gpu::passes::shadow::Drawn;
 use cutis_gpu::passes::shares::ShareGroup;
@@ -124,6 +125,7 @@ fn structs_of_the_passes_match_wgsl() {
         "Group",
         [first_light, light_count, object, samples, opaque_mm, pad0, pad1, pad2]
     );
+    same_layout!(Batch, shaders::OPENNESS, "Batch", [first, count, pad0, pad1]);
     same_layout!(ShareGroup, shaders::SHARES, "Group", [first_light, pad0, pad1, pad2]);
     same_layout!(
         Widening,
@@ -170,6 +172,7 @@ fn constants_match_wgsl() {
         (shaders::GATHER, "MAX_GAUSSIANS", MAX_GAUSSIANS as f64),
         (shaders::GATHER, "MAX_SIZES", MAX_SIZES as f64),
         (shaders::SMOOTH, "TEXELS_OF_MARK", f64::from(TEXELS_OF_MARK)),
+        (shaders::OPENNESS, "HALVINGS", openness::HALVINGS as f64),
         (shaders::GATHER, "NO_CHART", f64::from(u16::MAX)),
         (shaders::SHADOW, "NO_MAP", f64::from(NO_MAP)),
         (shaders::IRRADIANCE, "COSINES", COSINES as f64),

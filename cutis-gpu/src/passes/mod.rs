@@ -8,6 +8,7 @@ pub mod downsample;
 pub mod gather;
 pub mod irradiance;
 pub mod levels;
+pub mod openness;
 pub mod resolve;
 pub mod shadow;
 pub mod shares;
@@ -37,6 +38,8 @@ pub struct Passes {
     pub stretch: stretch::StretchPass,
     /// Pass `atlas`.
     pub atlas: atlas::AtlasPass,
+    /// Pass `openness`.
+    pub openness: openness::OpennessPass,
     /// Pass `shadow map`.
     pub shadow: shadow::ShadowPass,
     /// Pass `shadows`.
@@ -65,6 +68,7 @@ impl Passes {
             deform: deform::DeformPass::new(gpu),
             stretch: stretch::StretchPass::new(gpu),
             atlas: atlas::AtlasPass::new(gpu),
+            openness: openness::OpennessPass::new(gpu),
             shadow: shadow::ShadowPass::new(gpu),
             visibility: visibility::VisibilityPass::new(gpu),
             irradiance: irradiance::IrradiancePass::new(gpu),

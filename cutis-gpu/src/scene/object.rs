@@ -13,11 +13,10 @@ use crate::passes::resolve::ResolveInputs;
 use crate::passes::shares::ShareGroup;
 use crate::passes::transmission::TransmissionInputs;
 use crate::passes::visibility::{Group, visibility_map};
-use crate::passes::{LIGHTS_TOGETHER, Passes};
+use crate::passes::{LIGHTS_TOGETHER, Passes, openness};
 use crate::step::Step;
 use crate::{Gpu, GpuError};
 use bytemuck::Zeroable;
-use cutis_render::passes::ambient::Ambient;
 use cutis_render::passes::atlas::Atlas;
 use cutis_render::passes::diffusion::{Action, median_texel_mm, plan};
 use cutis_render::passes::stretch::stretch_mm_per_texel;
@@ -28,9 +27,6 @@ use cutis_render::technique::texture_space::opaque_mm;
 use cutis_scene::Object;
 use glam::Vec4;
 use wgpu::TextureFormat as Format;
-
-/// Finest maps that occlusion is kept in: a quarter as wide as the irradiance.
-const AMBIENT_HALVINGS: usize = 2;
 
 /// What is computed once for an object, by cutis-render.
 #[derive(Debug)]
@@ -72,9 +68,11 @@ pub struct ObjectMaps {
     pub local: Map,
     /// Light that came through, at half the size.
     pub transmission: Map,
-    charts: ChartPyramid,
+    /// Bent normal and openness.
+    pub ambient: Map,
+    /// Its charts in all sizes.
+    pub charts: ChartPyramid,
     material: MaterialMaps,
-    ambient: Map,
     rho_dt: Map,
 }
 
@@ -99,7 +97,6 @@ impl ObjectMaps {
         number: u32,
         object: &Object,
         prepared: Prepared,
-        ambient: &Ambient,
     ) -> Result<(Self, ObjectSteps), GpuError> {
         let Prepared { atlas: unrolled, texel_mm, kernel, rho_dt } = prepared;
         let size = unrolled.size as u32;
@@ -125,7 +122,7 @@ impl ObjectMaps {
             visibility: visibility_map(gpu, size, shared.light_count),
             local: like_level(gpu, "local", size, &levels.all[0].light),
             transmission: Map::square(gpu, "transmission", size / 2, 1, Format::Rgba16Float),
-            ambient: ambient_texture(gpu, ambient),
+            ambient: ambient_texture(gpu, size >> openness::HALVINGS, shared),
             rho_dt: rho_dt_texture(gpu, &rho_dt),
             levels,
             geometry,
@@ -165,7 +162,7 @@ impl ObjectMaps {
             environment: &shared.environment,
             geometry: &self.geometry,
             material: &self.material,
-            charts: [0, 1, AMBIENT_HALVINGS].map(|halvings| &self.charts.sizes[halvings]),
+            charts: [0, 1, openness::HALVINGS].map(|halvings| &self.charts.sizes[halvings]),
             local: &self.local,
             transmission: &self.transmission,
             visibility: &self.visibility,
@@ -215,7 +212,7 @@ impl Lighting<'_> {
             charts: &maps.charts.sizes[0],
             visibility: &maps.visibility,
             distances_mm: &distances,
-            ambient: (&maps.ambient, &maps.charts.sizes[AMBIENT_HALVINGS]),
+            ambient: (&maps.ambient, &maps.charts.sizes[openness::HALVINGS]),
             rho_dt: &maps.rho_dt,
         };
         steps.push(passes.irradiance.step(gpu, &inputs, &light.layers[0]));
@@ -267,12 +264,16 @@ fn light_layers(shared: &Shared) -> u32 {
 /// How often charts are halved: for the plan and once more for its stretch, and for the map of occlusion.
 fn halvings(plan: &[Action]) -> usize {
     let of_light = plan.iter().filter(|action| **action == Action::Halve).count();
-    (of_light + 1).max(AMBIENT_HALVINGS)
+    (of_light + 1).max(openness::HALVINGS)
 }
 
-fn ambient_texture(gpu: &Gpu, ambient: &Ambient) -> Map {
-    let size = ambient.charts().size as u32;
-    Map::of_values(gpu, "openness", [size, size], ambient.map().iter().copied())
+/// Where openness goes; open to all sides where nobody asks for it.
+fn ambient_texture(gpu: &Gpu, size: u32, shared: &Shared) -> Map {
+    if shared.surroundings.is_some() {
+        return Map::square(gpu, "openness", size, 1, Format::Rgba16Float);
+    }
+    let open = std::iter::repeat_n(Vec4::W, (size * size) as usize);
+    Map::of_values(gpu, "openness", [size, size], open)
 }
 
 /// The table of rho_dt: the means over the hemisphere are one more column.

@@ -87,6 +87,9 @@ impl Posing {
                 .collect();
             write_lights(gpu, shared, &lights);
         }
+        if let Some(surroundings) = &shared.surroundings {
+            surroundings.show(gpu, if as_uploaded { &self.first.bounds_mm } else { &corners });
+        }
         let around = if as_uploaded { None } else { bounds_mm(corners.iter().copied()) };
         let seen = {
             let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);

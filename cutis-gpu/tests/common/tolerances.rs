@@ -78,5 +78,7 @@ pub const CONSTANT: f32 = 4e-3;
 pub const EQUATION_16: [f64; 2] = [0.03, 2e-5];
 /// Radiance in a white furnace of radiance 1: 16-bit floats in the filtered environment, the table and the maps.
 pub const FURNACE: f32 = 6e-3;
-/// Share of a close view of the scan's ear that is lit on the adapter and dark on the processor.
-pub const LEAKED: f32 = 0.0025;
+/// Share of a close view of the scan's ear that is lit on the adapter and dark on the processor, and the other way round.
+pub const EAR: [f32; 2] = [0.0022, 0.00025];
+/// The same of its nostrils.
+pub const NOSTRILS: [f32; 2] = [0.0004, 0.0001];

@@ -46,8 +46,20 @@ fn from_light(shine: Shine, light: LightSample) -> vec3f {
     return light.irradiance_w_per_m2 * (shine.rho_s * lobe_per_sr * cos_light);
 }
 
-/// Occlusion of a specular lobe from that of the whole hemisphere (Lagarde & de Rousiers 2014, section 4.10.2).
-fn specular_openness(cos_eye: f32, open: f32, roughness: f32) -> f32 {
-    let exponent = exp2(-16.0 * roughness - 1.0);
-    return clamp(pow(max(cos_eye + open, 1e-12), exponent) - 1.0 + open, 0.0, 1.0);
+/// Share of a specular lobe that is not hidden, by cosines of its mirror direction with the normal and with the bent normal
+/// (Jimenez et al. 2016, section 5).
+fn lobe_openness(cos_normal: f32, cos_bent: f32, roughness: f32, open: f32) -> f32 {
+    let lobe_rad = 2.0 * atan(max(roughness, MIN_ROUGHNESS));
+    let open_rad = asin(sqrt(clamp(open, 0.0, 1.0)));
+    let whole = shared_by_caps(lobe_rad, 0.5 * PI, acos(clamp(cos_normal, 0.0, 1.0)));
+    return min(shared_by_caps(lobe_rad, open_rad, acos(clamp(cos_bent, -1.0, 1.0))) / whole, 1.0);
+}
+
+/// Solid angle over 2 pi that two spherical caps share (Oat & Sander 2007).
+fn shared_by_caps(a_rad: f32, b_rad: f32, apart_rad: f32) -> f32 {
+    let smaller = 1.0 - cos(min(a_rad, b_rad));
+    let inside = abs(a_rad - b_rad);
+    let outside = a_rad + b_rad;
+    let t = clamp((outside - apart_rad) / max(outside - inside, 1e-6), 0.0, 1.0);
+    return smaller * t * t * (3.0 - 2.0 * t);
 }

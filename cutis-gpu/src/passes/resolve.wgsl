@@ -114,11 +114,13 @@ fn from_surroundings(place: Place, shine: Shine) -> vec3f {
     let texels = around(place.uv, textureDimensions(ambient));
     let weights = chart_weights(ambient_charts, texels, place.chart);
     let covered = any(weights > vec4f(0.0));
-    let open = select(1.0, blend(ambient, texels, weights).w, covered);
+    let value = select(vec4f(place.smooth_normal, 1.0), blend(ambient, texels, weights), covered);
+    let bent = unit_or(shine.normal + unit_or(value.xyz, place.smooth_normal) - place.smooth_normal, shine.normal);
     let cos_eye = max(dot(shine.normal, shine.dir_to_eye), 0.0);
     let mirrored = shine.normal * (2.0 * dot(shine.normal, shine.dir_to_eye)) - shine.dir_to_eye;
     let albedo = shine.rho_s * specular_albedo(rho_dt_table, linear, cos_eye, shine.roughness);
-    return reflection(mirrored, shine.roughness) * (albedo * specular_openness(cos_eye, open, shine.roughness));
+    let seen = lobe_openness(dot(shine.normal, mirrored), dot(bent, mirrored), shine.roughness, value.w);
+    return reflection(mirrored, shine.roughness) * (albedo * seen);
 }
 
 /// Mean radiance over the specular lobe around a mirror direction.

@@ -66,10 +66,14 @@ impl Ambient {
         &self.map
     }
 
-    /// Bent normal and openness at `uv`; open to all sides where the chart has no texel.
-    pub fn at(&self, uv: Vec2, chart: u32, normal: Vec3) -> (Vec3, f32) {
+    /// Bent normal and openness at `uv`; open to all sides where the chart has no texel. Relief turns the bent normal as it
+    /// turns the smooth one.
+    pub fn at(&self, uv: Vec2, chart: u32, smooth_normal: Vec3, normal: Vec3) -> (Vec3, f32) {
         match self.charts.sample(&self.map, uv, chart) {
-            Some(value) => (value.truncate().normalize_or(normal), value.w),
+            Some(value) => {
+                let bent = value.truncate().normalize_or(smooth_normal);
+                ((normal + bent - smooth_normal).normalize_or(normal), value.w)
+            }
             None => (normal, 1.0),
         }
     }

@@ -146,9 +146,8 @@ fn visibility(
 
 fn from_environment(inputs: &IrradianceInputs, point: &SurfacePoint, normal: Vec3, chart: u32) -> Vec3 {
     let Some(environment) = inputs.environment else { return Vec3::ZERO };
-    let (bent, open) = inputs.ambient.at(point.uv, chart, point.normal);
-    // The relief turns the bent normal as it turns the smooth one.
-    environment.irradiance((normal + bent - point.normal).normalize_or(normal)) * open
+    let (bent, open) = inputs.ambient.at(point.uv, chart, point.normal, normal);
+    environment.irradiance(bent) * open
 }
 
 /// The normal with the material's relief.

@@ -131,7 +131,7 @@ impl Resolve<'_> {
             }
         }
         if let Some(environment) = self.environment {
-            let (_, open) = maps.ambient.at(point.uv, *chart, point.normal);
+            let open = maps.ambient.at(point.uv, *chart, point.normal, shine.normal);
             sum += shine.from_environment(environment, &maps.rho_dt, open);
         }
         sum

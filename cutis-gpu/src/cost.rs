@@ -27,7 +27,7 @@ pub const TAPS: [(&str, u64); 21] = [
     ("stretch_at_vertices", 0),
     ("unroll", 2),
     ("map_surface", 0),
-    ("add_openness", 60),
+    ("look_around", 112),
     ("smooth_openness", 51),
     ("see_lights", 96),
     ("see_sharp_lights", 12),

@@ -4,7 +4,7 @@ use cutis_gpu::passes::diffusion::{Along, Halved, Widening};
 use cutis_gpu::passes::downsample::Pixels;
 use cutis_gpu::passes::gather::{Gaussian, Gaussians};
 use cutis_gpu::passes::levels::{LevelSize, MAX_GAUSSIANS, MAX_SIZES};
-use cutis_gpu::passes::openness::{self, Batch};
+use cutis_gpu::passes::openness;
 use cutis_gpu::passes::resolve::{LayerKind, Wanted};
 use cutis_gpu::passes::shadow::Drawn;
 use cutis_gpu::passes::shares::ShareGroup;
@@ -125,7 +125,6 @@ fn structs_of_the_passes_match_wgsl() {
         "Group",
         [first_light, light_count, object, samples, opaque_mm, pad0, pad1, pad2]
     );
-    same_layout!(Batch, shaders::OPENNESS, "Batch", [first, count, pad0, pad1]);
     same_layout!(ShareGroup, shaders::SHARES, "Group", [first_light, pad0, pad1, pad2]);
     same_layout!(
         Widening,

@@ -10,33 +10,19 @@ use crate::scene::charts::ChartPyramid;
 use crate::scene::geometry::Geometry;
 use crate::shaders;
 use crate::step::{Draw, Step};
-use bytemuck::{Pod, Zeroable};
 use wgpu::TextureFormat as Format;
 
 /// How often the irradiance's size is halved for this map; also in the shader.
 pub const HALVINGS: usize = 2;
-/// Directions that are looked from together.
-pub const TOGETHER: u32 = 8;
-
-/// Some directions; its twin has the same name.
-#[repr(C)]
-#[derive(Debug, Clone, Copy, Pod, Zeroable)]
-pub struct Batch {
-    /// Number of the direction that the first layer of the maps shows.
-    pub first: u32,
-    /// How many there are.
-    pub count: u32,
-    /// Fills up the struct.
-    pub pad0: u32,
-    /// Fills up the struct.
-    pub pad1: u32,
-}
+/// Format of its maps. Half of the bits would do, but llvmpipe cuts off what it has no bits for, and what is open on all
+/// sides would lose a thousandth.
+pub const FORMAT: Format = Format::Rgba32Float;
 
 /// The pass's pipelines.
 #[derive(Debug)]
 pub struct OpennessPass {
     look: Pipeline,
-    add: Pipeline,
+    around: Pipeline,
     smooth: Pipeline,
 }
 
@@ -51,25 +37,24 @@ impl OpennessPass {
             additive: false,
             depth: true,
         };
-        let add = Blueprint {
+        let around = Blueprint {
             source: shaders::OPENNESS,
-            entries: ["cover_run", "add_openness"],
-            targets: &[Format::Rgba16Float],
-            additive: true,
+            entries: ["cover_run", "look_around"],
+            targets: &[FORMAT],
             depth: false,
             ..look
         };
-        let smooth = Blueprint { entries: ["cover_run", "smooth_openness"], additive: false, ..add };
-        let [look, add, smooth] = [look, add, smooth].map(|blueprint| Pipeline::new(gpu, &blueprint));
-        Self { look, add, smooth }
+        let smooth = Blueprint { entries: ["cover_run", "smooth_openness"], ..around };
+        let [look, around, smooth] = [look, around, smooth].map(|blueprint| Pipeline::new(gpu, &blueprint));
+        Self { look, around, smooth }
     }
 
-    /// Maps of `size` texels for the directions that are looked from together.
-    pub fn maps(gpu: &Gpu, size: u32) -> Map {
-        Map::square(gpu, "depths from afar", size, TOGETHER, DEPTH)
+    /// Maps of `size` texels for so many directions.
+    pub fn maps(gpu: &Gpu, size: u32, directions: u32) -> Map {
+        Map::square(gpu, "depths from afar", size, directions, DEPTH)
     }
 
-    /// Draws an object as it is seen from one of some directions; the first object empties the map before.
+    /// Draws an object as it is seen from a direction; the first object empties the map before.
     pub fn look(
         &self,
         gpu: &Gpu,
@@ -96,31 +81,27 @@ impl OpennessPass {
         })
     }
 
-    /// Adds what some directions see to a map; the first ones empty it before.
-    pub fn add(
+    /// Finds out what all directions see of an object.
+    pub fn look_around(
         &self,
         gpu: &Gpu,
-        batch: Batch,
         (directions, depths): (&wgpu::Buffer, &Map),
         (atlas, charts): (&AtlasMaps, &ChartPyramid),
         target: &Map,
     ) -> Step {
-        let numbers = gpu.uniform("batch", &batch);
         let bound = [
             (1, Bound::Buffer(directions)),
-            (2, Bound::Buffer(&numbers)),
-            (3, Bound::Texture(atlas.places.view())),
-            (4, Bound::Texture(atlas.stretch.view())),
-            (5, Bound::Texture(&charts.all)),
-            (6, Bound::Texture(&depths.array)),
+            (2, Bound::Texture(atlas.places.view())),
+            (3, Bound::Texture(atlas.stretch.view())),
+            (4, Bound::Texture(&charts.all)),
+            (5, Bound::Texture(&depths.array)),
         ];
-        let clear = batch.first == 0;
-        over_charts(gpu, &self.add, &charts.sizes[HALVINGS], &bound, &[target.view()], clear)
+        over_charts(gpu, &self.around, &charts.sizes[HALVINGS], &bound, &[target.view()], true)
     }
 
-    /// Smooths the sum over all directions, whose shadows have edges, into another map.
-    pub fn smooth(&self, gpu: &Gpu, charts: &ChartPyramid, [sum, target]: [&Map; 2]) -> Step {
-        let bound = [(5, Bound::Texture(&charts.all)), (7, Bound::Texture(sum.view()))];
+    /// Smooths the edges of what single directions see, into another map.
+    pub fn smooth(&self, gpu: &Gpu, charts: &ChartPyramid, [sharp, target]: [&Map; 2]) -> Step {
+        let bound = [(4, Bound::Texture(&charts.all)), (6, Bound::Texture(sharp.view()))];
         over_charts(gpu, &self.smooth, &charts.sizes[HALVINGS], &bound, &[target.view()], true)
     }
 }

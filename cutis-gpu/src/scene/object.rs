@@ -269,11 +269,11 @@ fn halvings(plan: &[Action]) -> usize {
 
 /// Where openness goes; open to all sides where nobody asks for it.
 fn ambient_texture(gpu: &Gpu, size: u32, shared: &Shared) -> Map {
-    if shared.surroundings.is_some() {
-        return Map::square(gpu, "openness", size, 1, Format::Rgba16Float);
+    let map = Map::square(gpu, "openness", size, 1, openness::FORMAT);
+    if shared.surroundings.is_none() {
+        map.write(gpu, 0, bytemuck::cast_slice(&vec![Vec4::W; (size * size) as usize]));
     }
-    let open = std::iter::repeat_n(Vec4::W, (size * size) as usize);
-    Map::of_values(gpu, "openness", [size, size], open)
+    map
 }
 
 /// The table of rho_dt: the means over the hemisphere are one more column.

@@ -5,7 +5,7 @@ use super::object::ObjectMaps;
 use crate::Gpu;
 use crate::map::Map;
 use crate::passes::Passes;
-use crate::passes::openness::{Batch, OpennessPass, TOGETHER};
+use crate::passes::openness::{FORMAT, OpennessPass};
 use crate::passes::shadow::Drawn;
 use crate::step::Step;
 use bytemuck::Zeroable;
@@ -19,7 +19,7 @@ const DIRECTIONS: [u32; 2] = [16, 128];
 /// Side of a map, texels.
 const MAP_TEXELS: u32 = 256;
 
-/// Directions, and maps for some of them at a time.
+/// Directions, and what is seen from them.
 #[derive(Debug)]
 pub struct Surroundings {
     /// [`GpuLight`] of every direction.
@@ -32,12 +32,11 @@ impl Surroundings {
     /// Directions that see all of some points, for as good a result as so many rays from a texel give.
     pub fn new(gpu: &Gpu, samples: u32, shown: &[Vec3]) -> Self {
         let [fewest, most] = DIRECTIONS;
-        let wanted = samples.saturating_mul(DIRECTIONS_PER_RAY).clamp(fewest, most);
-        let count = wanted.next_multiple_of(TOGETHER);
+        let count = samples.saturating_mul(DIRECTIONS_PER_RAY).clamp(fewest, most);
         Self {
             directions: gpu.storage("directions", &lights(count, shown)),
             count,
-            depths: OpennessPass::maps(gpu, MAP_TEXELS),
+            depths: OpennessPass::maps(gpu, MAP_TEXELS, count),
         }
     }
 
@@ -49,26 +48,19 @@ impl Surroundings {
     /// The steps that find out how open all objects are.
     pub fn steps(&self, gpu: &Gpu, passes: &Passes, objects: &[ObjectMaps]) -> Vec<Step> {
         let pass = &passes.openness;
-        let sum = |maps: &ObjectMaps| {
-            Map::square(gpu, "sum of openness", maps.ambient.width(), 1, maps.ambient.texture.format())
-        };
-        let sums: Vec<_> = objects.iter().map(sum).collect();
         let mut steps = Vec::new();
-        for first in (0..self.count).step_by(TOGETHER as usize) {
-            for (light, depth) in (first..).zip(&self.depths.layers) {
-                for (object, maps) in (0..).zip(objects) {
-                    let drawn = Drawn { light, object, ..Drawn::zeroed() };
-                    steps.push(pass.look(gpu, drawn, &self.directions, &maps.geometry, depth));
-                }
-            }
-            let batch = Batch { first, count: TOGETHER, ..Batch::zeroed() };
-            for (maps, sum) in objects.iter().zip(&sums) {
-                let seen = (&self.directions, &self.depths);
-                steps.push(pass.add(gpu, batch, seen, (&maps.atlas, &maps.charts), sum));
+        for (light, depth) in (0..).zip(&self.depths.layers) {
+            for (object, maps) in (0..).zip(objects) {
+                let drawn = Drawn { light, object, ..Drawn::zeroed() };
+                steps.push(pass.look(gpu, drawn, &self.directions, &maps.geometry, depth));
             }
         }
-        let pairs = objects.iter().zip(&sums);
-        steps.extend(pairs.map(|(maps, sum)| pass.smooth(gpu, &maps.charts, [sum, &maps.ambient])));
+        let seen = (&self.directions, &self.depths);
+        for ObjectMaps { atlas, charts, ambient, .. } in objects {
+            let sharp = Map::square(gpu, "sharp openness", ambient.width(), 1, FORMAT);
+            steps.push(pass.look_around(gpu, seen, (atlas, charts), &sharp));
+            steps.push(pass.smooth(gpu, charts, [&sharp, ambient]));
+        }
         steps
     }
 }
@@ -86,7 +78,7 @@ fn lights(count: u32, shown: &[Vec3]) -> Vec<GpuLight> {
         let dir_to_light = Vec3::new(aside * angle_rad.cos(), y, aside * angle_rad.sin());
         let far =
             Light::Directional { dir_to_light, irradiance_w_per_m2: Vec3::ZERO, angular_radius_rad: 0.0 };
-        GpuLight::over_points(&far, corners.iter().copied(), Some(i % TOGETHER))
+        GpuLight::over_points(&far, corners.iter().copied(), Some(i))
     };
     (0..count).map(light).collect()
 }

@@ -1,7 +1,8 @@
 //! The film: from a [`Frame`] of linear, scene-referred light to a picture that a screen can show, and to files.
 //!
 //! In order: exposure (a factor 2^EV), [`Bloom`], [`ToneMapper`]. The picture that comes out is *display-linear*:
-//! linear Rec. 709 in 0..=1 with 1 the screen's white; the sRGB curve is applied when a PNG is written.
+//! linear Rec. 709 in 0..=1 with 1 the screen's white; the sRGB curve is applied when [`codes()`] for a screen are made or
+//! a PNG is written, and what has 8 bits is [dithered](dither).
 //! EXR files hold the frame itself, before the film: see [`write()`].
 //!
 //! Coverage: colours are premultiplied from end to end. Exposure and bloom are linear and act on colour and coverage
@@ -10,6 +11,8 @@
 
 mod bloom;
 mod checkpoint;
+mod codes;
+pub mod dither;
 mod error;
 mod exr;
 mod format;
@@ -22,6 +25,7 @@ mod write;
 
 pub use bloom::Bloom;
 pub use checkpoint::{Checkpoint, CheckpointError};
+pub use codes::{codes, encoded};
 pub use error::FilmError;
 pub use format::{Format, known_extensions};
 pub use srgb::linear_to_srgb;

@@ -74,3 +74,10 @@ pub const EQUATION_16: [f64; 2] = [0.03, 2e-5];
 pub const FURNACE: f32 = 6e-3;
 /// Share of a close view of the scan's ear that is lit on the adapter and dark on the processor.
 pub const LEAKED: f32 = 0.0025;
+/// Codes of 8 bits by which the films may be apart: the dither is the same, a value at a threshold may round to either side.
+pub const CODES_APART: u8 = 1;
+/// Share of the codes that differ at all, where a share of the light was spread: llvmpipe cuts the 16-bit floats of the glow
+/// off, by up to 1/2048 in each of three passes, of which it is half on the mean.
+pub const fn codes_that_differ(spread: f32) -> f32 {
+    1e-3 + 0.15 * spread
+}

@@ -23,7 +23,7 @@ mod srgb;
 mod tone_map;
 mod write;
 
-pub use bloom::Bloom;
+pub use bloom::{Bloom, MAX_REACH, Spread};
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use codes::{codes, encoded};
 pub use error::FilmError;
@@ -41,7 +41,7 @@ use std::time::Instant;
 const MAX_EXPOSURE_EV: f32 = 32.0;
 
 /// Radiance beyond this is taken as this: the largest half float, so that PNG and EXR see the same brightest light.
-const MAX_RADIANCE: f32 = 65_504.0;
+pub const MAX_RADIANCE: f32 = 65_504.0;
 
 /// How a frame becomes a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]

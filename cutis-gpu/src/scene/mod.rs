@@ -13,6 +13,7 @@ pub mod object;
 mod picture;
 pub mod posing;
 pub mod reach;
+pub mod relight;
 pub mod shared;
 
 use crate::cost::Cost;

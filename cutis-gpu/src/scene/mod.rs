@@ -87,6 +87,7 @@ impl GpuScene {
         progress: &dyn Progress,
     ) -> Result<Self, SceneError> {
         let gpu = &gpu.counting();
+        gpu.check()?;
         check_texture(gpu, settings)?;
         let filtered = scene.environment.as_ref().map(FilteredEnvironment::new);
         let shared = Shared::new(gpu, scene, settings, filtered.as_ref())?;

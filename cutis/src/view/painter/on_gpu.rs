@@ -5,9 +5,11 @@ use super::artist::{Drawn, Subject};
 use super::watch::Watch;
 use crate::backend::Backend;
 use crate::view::look::{Look, bad_pose};
+use crate::view::screen::BEHIND;
 use crate::view::shown::texture_maps;
 use cutis_gpu::cost::by_pass;
 use cutis_gpu::scene::SceneError;
+use cutis_gpu::scene::development::Developing;
 use cutis_gpu::{Adapters, GpuError, GpuRenderer, GpuScene};
 use cutis_render::technique::texture_space::warnings;
 use cutis_render::{AovSpace, Frame, Progress, RenderError, Renderer, Settings};
@@ -131,13 +133,21 @@ impl OnGpu {
         }
         kept.ready.set_picture(&renderer.gpu, &renderer.passes, settings)?;
         kept.ready.set_camera(&renderer.gpu, &look.camera);
+        match subject.film {
+            Some(film) => {
+                let how = Developing { film, behind: BEHIND };
+                kept.ready.set_film(&renderer.gpu, &renderer.passes, how)?;
+            }
+            None => kept.ready.unset_film(),
+        }
         Ok(Self::frame(renderer, kept, subject)?)
     }
 
     fn frame(renderer: &GpuRenderer, kept: &Kept, subject: &Subject) -> Result<Drawn, GpuError> {
         let (settings, ready) = (&subject.settings, &kept.ready);
         let passes = ready.look_timed(&renderer.gpu)?;
-        let pixels = ready.picture(&renderer.gpu)?;
+        // The light itself is what files hold and the pointer reads.
+        let (pixels, codes) = (ready.picture(&renderer.gpu)?, ready.developed(&renderer.gpu)?);
         let layers = ready.layers(&renderer.gpu, &renderer.passes, &settings.aovs, AovSpace::Picture)?;
         let wanted: Vec<_> = texture_maps().filter(|_| subject.wants_maps).collect();
         let maps = ready.layers(&renderer.gpu, &renderer.passes, &wanted, AovSpace::Texture)?;
@@ -153,7 +163,7 @@ impl OnGpu {
             warnings: told,
         };
         let work = Some(Work { memory_bytes: ready.memory_bytes(), costs: by_pass(&ready.costs()) });
-        Ok(Drawn { frame, maps, machine: renderer.adapter(), work })
+        Ok(Drawn { frame, maps, machine: renderer.adapter(), work, codes })
     }
 }
 

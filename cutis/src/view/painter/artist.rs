@@ -20,7 +20,7 @@ use std::time::Instant;
 #[derive(Default)]
 pub struct Artist {
     cpu: OnCpu,
-    gpu: OnGpu,
+    pub(super) gpu: OnGpu,
 }
 
 /// A frame, and what it was drawn with.

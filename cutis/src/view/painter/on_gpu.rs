@@ -60,19 +60,46 @@ struct Kept {
 }
 
 impl Kept {
-    /// Better light than is asked for is welcome, and poses are taken by the device. Shadows are the
+    /// Better light than is asked for is welcome, and poses are taken by the device; other lights are tried. Shadows are the
     /// same at every stage: the device tries enough places of a light's disc from the first. What rays find, and the device
     /// cannot, is found anew for the best picture of a pose.
     fn serves(&self, renderer: &Arc<GpuRenderer>, subject: &Subject) -> bool {
         Arc::ptr_eq(&self.renderer, renderer)
             && Arc::ptr_eq(&self.scene, subject.scene)
-            && self.look.is_lit_like(&Look { pose: self.look.pose.clone(), ..subject.look.clone() })
+            && self.look.is_lit_like(&Look {
+                pose: self.look.pose.clone(),
+                lights: self.look.lights.clone(),
+                surroundings: self.look.surroundings,
+                ..subject.look.clone()
+            })
             && (!subject.is_best || self.uploaded.pose() == subject.look.pose)
             && self.settings.irradiance_size >= subject.settings.irradiance_size
+    }
+
+    /// Takes in the lights of a look. Tells whether that could be done.
+    fn relight(&mut self, look: &Look) -> bool {
+        if self.look.lights == look.lights && self.look.surroundings == look.surroundings {
+            return true;
+        }
+        let lights = std::mem::replace(&mut self.uploaded.lights, look.lights_of(&self.scene));
+        let environment = std::mem::replace(&mut self.uploaded.environment, look.environment_of(&self.scene));
+        let is_relit = self.ready.set_lights(&self.renderer.gpu, &self.uploaded);
+        if is_relit {
+            (self.look.lights, self.look.surroundings) = (look.lights.clone(), look.surroundings);
+        } else {
+            (self.uploaded.lights, self.uploaded.environment) = (lights, environment);
+        }
+        is_relit
     }
 }
 
 impl OnGpu {
+    /// The scene that is kept.
+    #[cfg(test)]
+    pub fn scene(&self) -> Option<&GpuScene> {
+        self.kept.as_ref().map(|kept| &kept.ready)
+    }
+
     /// Draws it.
     ///
     /// # Errors
@@ -106,7 +133,7 @@ impl OnGpu {
         watch: &Watch,
     ) -> Result<Drawn, SceneError> {
         let Subject { look, settings, scene, .. } = subject;
-        if !self.kept.as_ref().is_some_and(|kept| kept.serves(renderer, subject)) {
+        if !self.kept.as_mut().is_some_and(|kept| kept.serves(renderer, subject) && kept.relight(look)) {
             settings.check().map_err(SceneError::Render)?;
             let uploaded = look.applied_to(scene)?;
             let shadow_samples = Settings::default().shadow_samples;

@@ -2,6 +2,7 @@
 
 use super::drive::{backends, drag, drop_file, message, press, settle, window};
 use crate::backend::Backend;
+use crate::view::look::Look;
 use crate::view::screen::picture;
 use crate::view::shown::View;
 use cutis_render::Aov;
@@ -302,6 +303,28 @@ fn an_adapter_develops_like_the_processor() {
         assert!(most <= Some(1), "{most:?} codes");
         // The glow has 16 bits there.
         assert!(off < here.pixels.len() / 20, "{off} of {} differ", here.pixels.len());
+    }
+}
+
+#[test]
+fn a_light_is_moved_without_a_new_scene() {
+    for backend in backends("a_light_is_moved_without_a_new_scene") {
+        let mut moved = window([500.0, 300.0], backend);
+        settle(&mut moved);
+        let before = pixels(&moved);
+        let change = |look: &mut Look| {
+            look.lights[0].turn_degrees = 50.0;
+            look.lights[1].strength = 2.0;
+            look.surroundings.strength = 0.5;
+        };
+        change(&mut moved.state_mut().looks[0]);
+        settle(&mut moved);
+        let after = pixels(&moved);
+        assert!(after != before, "{backend}");
+        let mut fresh = window([500.0, 300.0], backend);
+        change(&mut fresh.state_mut().looks[0]);
+        settle(&mut fresh);
+        assert_same(&after, &pixels(&fresh), &backend.to_string());
     }
 }
 

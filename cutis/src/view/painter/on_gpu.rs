@@ -25,12 +25,18 @@ pub struct Devices {
 
 impl Devices {
     /// The renderer on the adapter that a backend means.
-    fn renderer(&mut self, backend: Backend) -> Result<Arc<GpuRenderer>, GpuError> {
+    pub fn renderer(&mut self, backend: Backend) -> Result<Arc<GpuRenderer>, GpuError> {
         let (open, adapters) = match backend {
             Backend::Gpu => (&mut self.any, Adapters::Any),
             _ => (&mut self.hardware, Adapters::Hardware),
         };
         open.get_or_insert_with(|| GpuRenderer::new(adapters).map(Arc::new)).clone()
+    }
+
+    /// With a renderer that passes for one on a graphics processor.
+    #[cfg(test)]
+    pub fn with_hardware(renderer: Arc<GpuRenderer>) -> Self {
+        Self { hardware: Some(Ok(renderer)), any: None }
     }
 
     /// A device that gave up is opened anew the next time.
@@ -110,20 +116,33 @@ impl OnGpu {
         subject: &Subject,
         watch: &Watch,
     ) -> Result<Drawn, RenderError> {
-        let renderer = devices.renderer(subject.look.drawing.backend).map_err(|error| because(&error))?;
-        self.draw_with(&renderer, subject, watch).map_err(|error| match error {
+        // A device that was lost, as when its driver is restarted, is opened anew once.
+        let drawn = match self.try_to_draw(devices, subject, watch) {
+            Err(SceneError::Gpu(GpuError::Lost { .. })) => self.try_to_draw(devices, subject, watch),
+            once => once,
+        };
+        drawn.map_err(|error| match error {
             SceneError::Render(error) => error,
-            SceneError::Gpu(error) => {
-                if matches!(
-                    error,
-                    GpuError::Lost { .. } | GpuError::OutOfMemory { .. } | GpuError::Refused { .. }
-                ) {
-                    devices.forget(&renderer);
-                    self.kept = None;
-                }
-                because(&error)
-            }
+            SceneError::Gpu(error) => RenderError::Backend { reason: error.to_string() },
         })
+    }
+
+    fn try_to_draw(
+        &mut self,
+        devices: &mut Devices,
+        subject: &Subject,
+        watch: &Watch,
+    ) -> Result<Drawn, SceneError> {
+        let renderer = devices.renderer(subject.look.drawing.backend)?;
+        let drawn = self.draw_with(&renderer, subject, watch);
+        if let Err(SceneError::Gpu(
+            GpuError::Lost { .. } | GpuError::OutOfMemory { .. } | GpuError::Refused { .. },
+        )) = &drawn
+        {
+            devices.forget(&renderer);
+            self.kept = None;
+        }
+        drawn
     }
 
     fn draw_with(
@@ -192,8 +211,4 @@ impl OnGpu {
         let work = Some(Work { memory_bytes: ready.memory_bytes(), costs: by_pass(&ready.costs()) });
         Ok(Drawn { frame, maps, machine: renderer.adapter(), work, codes })
     }
-}
-
-fn because(error: &GpuError) -> RenderError {
-    RenderError::Backend { reason: error.to_string() }
 }

@@ -1,4 +1,4 @@
-//! Pictures that follow each other, with other lights.
+//! Pictures that follow each other: with other lights, and on a device that was lost between them.
 
 use super::artist::Artist;
 use super::on_gpu::Devices;
@@ -8,6 +8,7 @@ use crate::backend::Backend;
 use crate::view::look::{Drawing, Look};
 use crate::view::shown::Shown;
 use crate::view::tests::drive::backends;
+use cutis_gpu::{Adapters, GpuRenderer};
 use cutis_scene::head::HeadDetail;
 use cutis_scene::studio;
 use std::sync::Arc;
@@ -51,4 +52,40 @@ fn other_lights_need_no_new_scene_and_another_number_of_them_does() {
     assert!(first == lights_after(|look| look.surroundings.turn_degrees = 40.0), "turned surroundings");
     assert!(first == lights_after(|look| look.surroundings.strength = 2.0), "brighter surroundings");
     assert!(first != lights_after(|look| look.lights[0].on = false), "one light less");
+}
+
+#[test]
+fn the_next_picture_is_drawn_on_a_device_that_is_opened_anew() {
+    if !has_adapter("the_next_picture_is_drawn_on_a_device_that_is_opened_anew") {
+        return;
+    }
+    let (mut artist, mut devices, wish) = (Artist::default(), Devices::default(), wish(Backend::Gpu));
+    let before = draft(&mut artist, &mut devices, &wish);
+    let lost = devices.renderer(Backend::Gpu).expect("is open");
+    lost.gpu.device.destroy();
+    let after = draft(&mut artist, &mut devices, &wish);
+    assert!(after.image == before.image, "the same picture");
+    let opened = devices.renderer(Backend::Gpu).expect("is open");
+    assert!(!Arc::ptr_eq(&lost, &opened), "another device");
+}
+
+#[test]
+fn auto_goes_to_the_processor_and_says_why() {
+    let test = "auto_goes_to_the_processor_and_says_why";
+    if !has_adapter(test) {
+        return;
+    }
+    if GpuRenderer::new(Adapters::Hardware).is_ok() {
+        eprintln!("SKIPPED: {test}: a graphics processor would be opened anew");
+        return;
+    }
+    let (mut artist, wish) = (Artist::default(), wish(Backend::Auto));
+    let stand_in = Arc::new(GpuRenderer::new(Adapters::Any).expect("was there a moment ago"));
+    let mut devices = Devices::with_hardware(Arc::clone(&stand_in));
+    let before = draft(&mut artist, &mut devices, &wish);
+    assert!(before.frame.warnings.iter().all(|warning| !warning.contains("processor")));
+    stand_in.gpu.device.destroy();
+    let after = draft(&mut artist, &mut devices, &wish);
+    let told = after.frame.warnings.last().expect("something is told");
+    assert!(told.starts_with("drawn on the processor, because there is no graphics adapter"), "{told}");
 }

@@ -22,24 +22,23 @@ pub struct Cost {
 
 /// Reads of textures by one invocation of every entry point but those of vertices, counted in its source: one light, as many
 /// Gaussians as skin has at a size, loops as long as for most texels, the default bloom of 1080 rows.
-pub const TAPS: [(&str, u64); 27] = [
+pub const TAPS: [(&str, u64); 26] = [
     ("deform_vertices", 0),
     ("stretch_at_vertices", 0),
     ("unroll", 2),
     ("map_surface", 0),
+    ("add_openness", 60),
+    ("smooth_openness", 51),
     ("see_lights", 96),
     ("see_sharp_lights", 12),
     ("light_texel", 19),
     ("share_lights", 6),
     ("lay_taps", 15),
-    ("blur_by_twos", 6),
-    ("blur_by_fours", 10),
-    ("blur_by_eights", 18),
+    ("blur", 11),
     ("halve", 9),
-    ("gather_texel", 5),
-    ("gather", 12),
-    ("mark_thin", 288),
-    ("transmit", 80),
+    ("gather", 40),
+    ("mark_thin", 176),
+    ("transmit", 130),
     ("smooth_map", 51),
     ("shade", 36),
     ("show", 44),

@@ -4,7 +4,7 @@ use crate::Gpu;
 use glam::Vec4;
 use half::f16;
 
-/// A square or rectangular texture of one or more layers.
+/// A square or rectangular texture of one or more layers, or those of one size of a [`Pyramid`].
 #[derive(Debug, Clone)]
 pub struct Map {
     /// The texture itself.
@@ -15,6 +15,18 @@ pub struct Map {
     pub layers: Vec<View>,
     /// Number of the first of them in the texture.
     pub first_layer: u32,
+    /// How often the texture's size is halved.
+    pub halvings: u32,
+}
+
+/// Layers of several sizes, each half of the one before, in one texture: what its shader calls mip levels.
+#[derive(Debug, Clone)]
+pub struct Pyramid {
+    texture: wgpu::Texture,
+    /// All layers of all sizes, for shaders that take an array.
+    pub array: View,
+    /// The first layer of all sizes.
+    pub first: View,
 }
 
 /// Some layers of a texture, as passes bind them.
@@ -35,43 +47,42 @@ impl View {
     }
 }
 
+impl Pyramid {
+    /// A square texture of zeros; its size may be halved `halvings` times.
+    pub fn new(
+        gpu: &Gpu,
+        label: &str,
+        size: u32,
+        [layers, halvings]: [u32; 2],
+        format: wgpu::TextureFormat,
+    ) -> Self {
+        let texture = texture(gpu, label, [size, size], [layers, halvings + 1], format);
+        let view = |dimension, layers| view(&texture, dimension, (0, layers), (0, halvings + 1));
+        Self {
+            array: view(wgpu::TextureViewDimension::D2Array, layers),
+            first: view(wgpu::TextureViewDimension::D2, 1),
+            texture,
+        }
+    }
+
+    /// Some layers of the size that is halved so often.
+    pub fn part(&self, halvings: u32, first: u32, layers: u32) -> Map {
+        Map::over(self.texture.clone(), halvings, first, layers)
+    }
+}
+
 impl Map {
     /// A texture of zeros.
     pub fn new(gpu: &Gpu, label: &str, size: [u32; 2], layers: u32, format: wgpu::TextureFormat) -> Self {
-        gpu.count(u64::from(size[0]) * u64::from(size[1]) * u64::from(layers) * texel_bytes(format));
-        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some(label),
-            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: layers },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: usages(format),
-            view_formats: &[],
-        });
-        Self::over(texture, 0, layers)
+        Self::over(texture(gpu, label, size, [layers, 1], format), 0, 0, layers)
     }
 
-    /// Some layers of it, as a map of their own.
-    pub fn part(&self, first: u32, layers: u32) -> Self {
-        Self::over(self.texture.clone(), self.first_layer + first, layers)
-    }
-
-    fn over(texture: wgpu::Texture, first_layer: u32, layers: u32) -> Self {
-        let view = |dimension, base_array_layer, count| View {
-            raw: texture.create_view(&wgpu::TextureViewDescriptor {
-                dimension: Some(dimension),
-                base_array_layer,
-                array_layer_count: Some(count),
-                ..wgpu::TextureViewDescriptor::default()
-            }),
-            texels: u64::from(texture.width()) * u64::from(texture.height()) * u64::from(count),
-            texel_bytes: texel_bytes(texture.format()),
-        };
-        let array = view(wgpu::TextureViewDimension::D2Array, first_layer, layers);
-        let each = first_layer..first_layer + layers;
-        let layers = each.map(|l| view(wgpu::TextureViewDimension::D2, l, 1)).collect();
-        Self { texture, array, layers, first_layer }
+    fn over(texture: wgpu::Texture, halvings: u32, first_layer: u32, count: u32) -> Self {
+        let view = |dimension, layers| view(&texture, dimension, layers, (halvings, 1));
+        let array = view(wgpu::TextureViewDimension::D2Array, (first_layer, count));
+        let each = first_layer..first_layer + count;
+        let layers = each.map(|l| view(wgpu::TextureViewDimension::D2, (l, 1))).collect();
+        Self { texture, array, layers, first_layer, halvings }
     }
 
     /// A square texture of zeros.
@@ -93,16 +104,14 @@ impl Map {
 
     /// Fills a layer, row by row.
     pub fn write(&self, gpu: &Gpu, layer: u32, bytes: &[u8]) {
-        let size = wgpu::Extent3d { depth_or_array_layers: 1, ..self.texture.size() };
+        let size = self.extent();
         let texel_bytes = self.texture.format().block_copy_size(None).expect("no format here is compressed");
-        let mut target = self.texture.as_image_copy();
-        target.origin.z = self.first_layer + layer;
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
             bytes_per_row: Some(size.width * texel_bytes),
             rows_per_image: None,
         };
-        gpu.queue.write_texture(target, bytes, layout, size);
+        gpu.queue.write_texture(self.place(layer), bytes, layout, size);
     }
 
     /// The only layer.
@@ -110,15 +119,81 @@ impl Map {
         &self.layers[0]
     }
 
+    /// Where a layer lies in the texture.
+    pub fn place(&self, layer: u32) -> wgpu::TexelCopyTextureInfo<'_> {
+        let mut place = self.texture.as_image_copy();
+        place.mip_level = self.halvings;
+        place.origin.z = self.first_layer + layer;
+        place
+    }
+
+    /// Width and height of one layer.
+    pub fn extent(&self) -> wgpu::Extent3d {
+        wgpu::Extent3d { width: self.width(), height: self.height(), depth_or_array_layers: 1 }
+    }
+
     /// Width in texels.
     pub fn width(&self) -> u32 {
-        self.texture.width()
+        halved(self.texture.width(), self.halvings)
     }
 
     /// Height in texels.
     pub fn height(&self) -> u32 {
-        self.texture.height()
+        halved(self.texture.height(), self.halvings)
     }
+}
+
+/// A texture of zeros.
+fn texture(
+    gpu: &Gpu,
+    label: &str,
+    [width, height]: [u32; 2],
+    [layers, sizes]: [u32; 2],
+    format: wgpu::TextureFormat,
+) -> wgpu::Texture {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: layers },
+        mip_level_count: sizes,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: usages(format),
+        view_formats: &[],
+    });
+    gpu.count(texels(&texture, layers, (0, sizes)) * texel_bytes(format));
+    texture
+}
+
+/// Some layers and sizes of a texture, each told by the first and how many there are.
+fn view(
+    texture: &wgpu::Texture,
+    dimension: wgpu::TextureViewDimension,
+    (base_array_layer, layers): (u32, u32),
+    (base_mip_level, sizes): (u32, u32),
+) -> View {
+    View {
+        raw: texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(dimension),
+            base_array_layer,
+            array_layer_count: Some(layers),
+            base_mip_level,
+            mip_level_count: Some(sizes),
+            ..wgpu::TextureViewDescriptor::default()
+        }),
+        texels: texels(texture, layers, (base_mip_level, sizes)),
+        texel_bytes: texel_bytes(texture.format()),
+    }
+}
+
+/// Texels of so many layers of some sizes.
+fn texels(texture: &wgpu::Texture, layers: u32, (first, sizes): (u32, u32)) -> u64 {
+    let of_size = |n| u64::from(halved(texture.width(), n)) * u64::from(halved(texture.height(), n));
+    (first..first + sizes).map(of_size).sum::<u64>() * u64::from(layers)
+}
+
+fn halved(side: u32, times: u32) -> u32 {
+    (side >> times).max(1)
 }
 
 fn texel_bytes(format: wgpu::TextureFormat) -> u64 {

@@ -63,16 +63,11 @@ fn pitch(map: &Map) -> usize {
 }
 
 fn copy(gpu: &Gpu, map: &Map, layer: u32, buffer: &wgpu::Buffer) {
-    let mut source = map.texture.as_image_copy();
-    source.origin.z = map.first_layer + layer;
-    let layout = wgpu::TexelCopyBufferLayout {
-        offset: 0,
-        bytes_per_row: Some(pitch(map) as u32),
-        rows_per_image: None,
-    };
-    let size = wgpu::Extent3d { depth_or_array_layers: 1, ..map.texture.size() };
+    let bytes_per_row = Some(pitch(map) as u32);
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    encoder.copy_texture_to_buffer(source, wgpu::TexelCopyBufferInfo { buffer, layout }, size);
+    let to = wgpu::TexelCopyBufferInfo { buffer, layout };
+    encoder.copy_texture_to_buffer(map.place(layer), to, map.extent());
     gpu.queue.submit([encoder.finish()]);
 }
 

@@ -20,6 +20,15 @@ pub const ATLAS: &str = wgsl!(
 /// Pass `shadow map`.
 pub const SHADOW: &str =
     wgsl!("lib/mesh.wgsl", "lib/lights.wgsl", "lib/light_map.wgsl", "passes/shadow.wgsl");
+/// Pass `openness`.
+pub const OPENNESS: &str = wgsl!(
+    "lib/tiles.wgsl",
+    "lib/charts.wgsl",
+    "lib/packing.wgsl",
+    "lib/lights.wgsl",
+    "lib/light_map.wgsl",
+    "passes/openness.wgsl"
+);
 /// Pass `shadows`.
 pub const VISIBILITY: &str = wgsl!(
     "lib/tiles.wgsl",
@@ -106,11 +115,12 @@ pub const TONE_MAP: &str = wgsl!(
 );
 
 /// All of them by name.
-pub const ALL: [(&str, &str); 18] = [
+pub const ALL: [(&str, &str); 19] = [
     ("deform", DEFORM),
     ("stretch", STRETCH),
     ("atlas", ATLAS),
     ("shadow", SHADOW),
+    ("openness", OPENNESS),
     ("visibility", VISIBILITY),
     ("irradiance", IRRADIANCE),
     ("shares", SHARES),

@@ -5,9 +5,9 @@ mod common;
 use common::{difference, head_in_the_studio, read, renderer, tolerances};
 use cutis_gpu::GpuRenderer;
 use cutis_gpu::map::{Map, half_bytes};
-use cutis_gpu::passes::diffusion::shortened;
+use cutis_gpu::passes::diffusion::{like_level, shortened};
 use cutis_gpu::passes::levels::Levels;
-use cutis_gpu::scene::charts::ChartTexture;
+use cutis_gpu::scene::charts::ChartPyramid;
 use cutis_optics::presets;
 use cutis_render::Silent;
 use cutis_render::passes::atlas::{Atlas, ChartMap, NO_CHART};
@@ -45,12 +45,13 @@ fn diffuse_on_gpu(
         let half = charts[charts.len() - 1].halved();
         charts.push(Arc::new(half));
     }
-    let textures: Vec<_> = charts.iter().map(|c| ChartTexture::new(gpu, c)).collect();
+    let textures = ChartPyramid::new(gpu, &atlas.charts, charts.len()).sizes;
     let levels = Levels::new(gpu, &textures, 1, &plan);
     levels.all[0].light.write(gpu, 0, &half_bytes(light.iter().copied()));
     let stretch = stretch_mm.iter().map(|s| s.extend(0.0).extend(0.0));
     let stretch = Map::of_values(gpu, "stretch", [size, size], stretch);
-    let diffusion = passes.diffusion.steps(gpu, &textures, &levels, &stretch, &plan, texel_mm);
+    let half_way = like_level(gpu, "blurred light", size, &levels.all[0].light);
+    let diffusion = passes.diffusion.steps(gpu, &textures, &levels, (&stretch, &half_way), &plan);
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     diffusion.taps.iter().chain(&diffusion.blurs).for_each(|step| step.encode(&mut encoder, None));
     gpu.queue.submit([encoder.finish()]);

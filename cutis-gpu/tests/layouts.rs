@@ -3,7 +3,8 @@
 use cutis_gpu::passes::diffusion::{Along, Halved, Widening};
 use cutis_gpu::passes::downsample::Pixels;
 use cutis_gpu::passes::gather::{Gaussian, Gaussians};
-use cutis_gpu::passes::levels::MAX_GAUSSIANS;
+use cutis_gpu::passes::levels::{LevelSize, MAX_GAUSSIANS, MAX_SIZES};
+use cutis_gpu::passes::openness::{self, Batch};
 use cutis_gpu::passes::resolve::{LayerKind, Wanted};
 use cutis_gpu::passes::shadow::Drawn;
 use cutis_gpu::passes::shares::ShareGroup;
@@ -126,6 +127,7 @@ fn structs_of_the_passes_match_wgsl() {
         "Group",
         [first_light, light_count, object, samples, opaque_mm, pad0, pad1, pad2]
     );
+    same_layout!(Batch, shaders::OPENNESS, "Batch", [first, count, pad0, pad1]);
     same_layout!(ShareGroup, shaders::SHARES, "Group", [first_light, pad0, pad1, pad2]);
     same_layout!(
         Widening,
@@ -133,17 +135,20 @@ fn structs_of_the_passes_match_wgsl() {
         "Widening",
         [from_mm2, to_mm2, saved_texel2, unit_variance, weights, axis, pad0, pad1, pad2]
     );
-    same_layout!(Along, shaders::BLUR, "Along", [step_texels, pad0, pad1]);
+    same_layout!(Along, shaders::BLUR, "Along", [step_texels, axis, pad0]);
     same_layout!(Halved, shaders::HALVE, "Halved", [layer, factor, pad0, pad1]);
+    for shader in [shaders::GATHER, shaders::TRANSMISSION] {
+        same_layout!(LevelSize, shader, "LevelSize", [halvings, end, finer_halvings, finer_layer]);
+    }
     same_layout!(Gaussian, shaders::GATHER, "Gaussian", [weight, layer]);
-    same_layout!(Gaussians, shaders::GATHER, "Gaussians", [all, count, finer_layer, pad0, pad1]);
+    same_layout!(Gaussians, shaders::GATHER, "Gaussians", [all, sizes, size_count, pad0, pad1, pad2]);
     same_layout!(
         Slab,
         shaders::TRANSMISSION,
         "Slab",
-        [weight, variance_mm2, layer, before, before_is_finer, pad0]
+        [weight, variance_mm2, layer, before_layer, before_halvings, pad0]
     );
-    same_layout!(Slabs, shaders::TRANSMISSION, "Slabs", [all, count, finer_layer, object, many_lights]);
+    same_layout!(Slabs, shaders::TRANSMISSION, "Slabs", [all, sizes, count, size_count, object, many_lights]);
     same_layout!(Smoothing, shaders::SMOOTH, "Smoothing", [step, reach, pad0, pad1]);
     same_layout!(Wanted, shaders::RESOLVE, "Wanted", [layer, pad0, pad1, pad2]);
     same_layout!(Pixels, shaders::DOWNSAMPLE, "Pixels", [grid, pad0, pad1, pad2]);
@@ -173,7 +178,9 @@ fn constants_match_wgsl() {
     let expected = [
         (shaders::BLUR, "TILE_TEXELS", passes::TILE_TEXELS as f64),
         (shaders::GATHER, "MAX_GAUSSIANS", MAX_GAUSSIANS as f64),
+        (shaders::GATHER, "MAX_SIZES", MAX_SIZES as f64),
         (shaders::SMOOTH, "TEXELS_OF_MARK", f64::from(TEXELS_OF_MARK)),
+        (shaders::OPENNESS, "HALVINGS", openness::HALVINGS as f64),
         (shaders::GATHER, "NO_CHART", f64::from(u16::MAX)),
         (shaders::SHADOW, "NO_MAP", f64::from(NO_MAP)),
         (shaders::IRRADIANCE, "COSINES", COSINES as f64),
@@ -182,7 +189,6 @@ fn constants_match_wgsl() {
         (shaders::TAPS, "NARROW_TEXEL2", NARROW_TEXEL2),
         (shaders::TRANSMISSION, "FADE_DEVIATIONS", f64::from(FADE_DEVIATIONS)),
         (shaders::TRANSMISSION, "VISIBLE", f64::from(VISIBLE)),
-        (shaders::TAPS, "DEVIATIONS", constant(shaders::BLUR, "DEVIATIONS")),
         (shaders::RESOLVE, "LEVEL", f64::from(LayerKind::Level as u32)),
         (shaders::RESOLVE, "DISTANCES", f64::from(LayerKind::Distances as u32)),
         (shaders::RESOLVE, "DISTANCE_OF_ONE", f64::from(LayerKind::DistanceOfOne as u32)),

@@ -23,10 +23,15 @@ fn around(uv: vec2f, size: vec2u) -> Around {
 
 /// The weights of those texels that belong to `chart`, scaled to sum 1; all 0 if none does.
 fn chart_weights(charts: texture_2d<u32>, texels: Around, chart: u32) -> vec4f {
-    let a = textureLoad(charts, texels.first, 0).x;
-    let b = textureLoad(charts, vec2i(texels.last.x, texels.first.y), 0).x;
-    let c = textureLoad(charts, vec2i(texels.first.x, texels.last.y), 0).x;
-    let d = textureLoad(charts, texels.last, 0).x;
+    return halved_chart_weights(charts, 0u, texels, chart);
+}
+
+/// The same on charts that are halved so often.
+fn halved_chart_weights(charts: texture_2d<u32>, halvings: u32, texels: Around, chart: u32) -> vec4f {
+    let a = textureLoad(charts, texels.first, halvings).x;
+    let b = textureLoad(charts, vec2i(texels.last.x, texels.first.y), halvings).x;
+    let c = textureLoad(charts, vec2i(texels.first.x, texels.last.y), halvings).x;
+    let d = textureLoad(charts, texels.last, halvings).x;
     let own = select(vec4f(0.0), texels.weights, vec4u(a, b, c, d) == vec4u(chart));
     let sum = own.x + own.y + own.z + own.w;
     // Below a thousandth the quotient would only magnify rounding.
@@ -44,8 +49,12 @@ fn blend(map: texture_2d<f32>, texels: Around, weights: vec4f) -> vec4f {
 }
 
 fn blend_layer(map: texture_2d_array<f32>, layer: u32, texels: Around, weights: vec4f) -> vec4f {
-    return textureLoad(map, texels.first, layer, 0) * weights.x
-        + textureLoad(map, vec2i(texels.last.x, texels.first.y), layer, 0) * weights.y
-        + textureLoad(map, vec2i(texels.first.x, texels.last.y), layer, 0) * weights.z
-        + textureLoad(map, texels.last, layer, 0) * weights.w;
+    return blend_halved(map, 0u, layer, texels, weights);
+}
+
+fn blend_halved(map: texture_2d_array<f32>, halvings: u32, layer: u32, texels: Around, weights: vec4f) -> vec4f {
+    return textureLoad(map, texels.first, layer, halvings) * weights.x
+        + textureLoad(map, vec2i(texels.last.x, texels.first.y), layer, halvings) * weights.y
+        + textureLoad(map, vec2i(texels.first.x, texels.last.y), layer, halvings) * weights.z
+        + textureLoad(map, texels.last, layer, halvings) * weights.w;
 }

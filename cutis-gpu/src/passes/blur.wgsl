@@ -6,21 +6,27 @@
 
 @group(0) @binding(1) var<uniform> along: Along;
 @group(0) @binding(2) var light: texture_2d<f32>;
-/// Variance of the Gaussian ahead and behind, texel²: see `taps.wgsl`.
+/// Variance of the Gaussian ahead and behind, texel², at half the size: see `taps.wgsl`.
 @group(0) @binding(3) var variances: texture_2d<f32>;
+@group(0) @binding(4) var charts: texture_2d<u32>;
+/// Sampled, a texel costs adapters without texture units half of what loading it does.
+@group(0) @binding(5) var nearest: sampler;
 
 struct Along {
-    step_texels: vec2i,
+    step_texels: vec2f,
+    /// 0 along u, 1 along v.
+    axis: u32,
     pad0: u32,
-    pad1: u32,
 }
 
-/// Deviations that are taken in; also in `taps.wgsl`.
+/// Deviations that are taken in; `taps.wgsl` makes up for what lies beyond.
 const DEVIATIONS: f32 = 3.3;
 
 /// What has been read so far. Either side has half of the light, and half of the centre is its own.
 struct Sides {
-    texel: vec2i,
+    uv: vec2f,
+    /// From one texel to the next.
+    step_uv: vec2f,
     ahead: vec4f,
     behind: vec4f,
     whole: vec2f,
@@ -32,25 +38,33 @@ struct Sides {
     farthest: i32,
 }
 
-fn sides(texel: vec2i) -> Sides {
-    let variance = textureLoad(variances, texel, 0).xy;
+fn sides(position: vec2f) -> Sides {
+    let texel = vec2i(position);
+    let size = vec2f(textureDimensions(light));
+    // Towards a seam taps come closer, so that none leaves the chart.
+    let reach = f32((textureLoad(charts, texel, 0).y >> (8u * along.axis)) & 255u);
+    let widest = max((reach - 0.5) / DEVIATIONS, 0.0);
+    let half_texel = min(texel / 2, vec2i(textureDimensions(variances)) - 1);
+    let variance = min(textureLoad(variances, half_texel, 0).xy, vec2f(widest * widest));
     let q = exp(-0.5 / max(variance, vec2f(0.02)));
     let centre = 0.5 * textureLoad(light, texel, 0);
     let farthest = i32(DEVIATIONS * sqrt(max(variance.x, variance.y)) + 0.5);
-    return Sides(texel, centre, centre, vec2f(0.5), q, q * q * q, q * q, farthest);
+    return Sides(position / size, along.step_texels / size, centre, centre, vec2f(0.5), q, q * q * q, q * q, farthest);
+}
+
+fn at(uv: vec2f) -> vec4f {
+    return textureSampleLevel(light, nearest, uv, 0.0);
 }
 
 /// With what lies `d` and `d + 1` texels away.
 fn two_more(before: Sides, d: i32) -> Sides {
-    let near = d * along.step_texels;
-    let far = near + along.step_texels;
+    let near = f32(d) * before.step_uv;
+    let far = near + before.step_uv;
     let second = before.weight * before.growth;
     let growth = before.growth * before.growth_of_growth;
     var sides = before;
-    sides.ahead += textureLoad(light, before.texel + near, 0) * before.weight.x
-        + textureLoad(light, before.texel + far, 0) * second.x;
-    sides.behind += textureLoad(light, before.texel - near, 0) * before.weight.y
-        + textureLoad(light, before.texel - far, 0) * second.y;
+    sides.ahead += at(before.uv + near) * before.weight.x + at(before.uv + far) * second.x;
+    sides.behind += at(before.uv - near) * before.weight.y + at(before.uv - far) * second.y;
     sides.whole += before.weight + second;
     sides.weight = second * growth;
     sides.growth = growth * before.growth_of_growth;
@@ -61,44 +75,15 @@ fn together(sides: Sides) -> vec4f {
     return sides.ahead * (0.5 / sides.whole.x) + sides.behind * (0.5 / sides.whole.y);
 }
 
-// Three forms of one loop, which differ only in how much is read between two looks whether it is enough.
-
 @fragment
-fn blur_by_twos(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    var read = sides(vec2i(position.xy));
+fn blur(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    var read = sides(position.xy);
     var d = 1;
+    // One look whether it is enough for two distances.
     loop {
         read = two_more(read, d);
         continuing {
             d += 2;
-            break if d > read.farthest;
-        }
-    }
-    return together(read);
-}
-
-@fragment
-fn blur_by_fours(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    var read = sides(vec2i(position.xy));
-    var d = 1;
-    loop {
-        read = two_more(two_more(read, d), d + 2);
-        continuing {
-            d += 4;
-            break if d > read.farthest;
-        }
-    }
-    return together(read);
-}
-
-@fragment
-fn blur_by_eights(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    var read = sides(vec2i(position.xy));
-    var d = 1;
-    loop {
-        read = two_more(two_more(two_more(two_more(read, d), d + 2), d + 4), d + 6);
-        continuing {
-            d += 8;
             break if d > read.farthest;
         }
     }

@@ -3,9 +3,10 @@
 
 use crate::Gpu;
 use crate::map::View;
-use crate::passes::levels::{Levels, MAX_GAUSSIANS};
+use crate::passes::levels::{LevelSize, Levels, MAX_GAUSSIANS, MAX_SIZES};
 use crate::passes::over_charts;
 use crate::pipeline::{Blueprint, Bound, Pipeline};
+use crate::scene::charts::ChartPyramid;
 use crate::shaders;
 use crate::step::Step;
 use bytemuck::{Pod, Zeroable};
@@ -22,78 +23,71 @@ pub struct Gaussian {
     pub layer: u32,
 }
 
-/// The Gaussians whose levels have one size; its twin has the same name.
+/// All Gaussians; its twin has the same name.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Gaussians {
-    /// The first `count` of them count.
+    /// Those of the kernel; the others are not read.
     pub all: [Gaussian; MAX_GAUSSIANS],
-    /// How many there are.
-    pub count: u32,
-    /// Layer of the last level one size up.
-    pub finer_layer: u32,
+    /// The same by the sizes of their levels; the first `size_count` of them count.
+    pub sizes: [LevelSize; MAX_SIZES],
+    /// How many sizes there are.
+    pub size_count: u32,
     /// Fills up the struct.
     pub pad0: u32,
     /// Fills up the struct.
     pub pad1: u32,
+    /// Fills up the struct.
+    pub pad2: u32,
 }
 
 /// The pass's pipeline.
 #[derive(Debug)]
 pub struct GatherPass {
-    full_size: Pipeline,
-    smaller: Pipeline,
+    pipeline: Pipeline,
 }
 
 impl GatherPass {
     /// Compiles it.
     pub fn new(gpu: &Gpu) -> Self {
-        let pipeline = |entry| {
-            let (entries, targets) = (["cover_run", entry], &[Format::Rgba16Float]);
-            let (name, source) = ("gather", shaders::GATHER);
-            Pipeline::new(gpu, &Blueprint { name, source, entries, targets, additive: true, depth: false })
+        let blueprint = Blueprint {
+            name: "gather",
+            source: shaders::GATHER,
+            entries: ["cover_run", "gather"],
+            targets: &[Format::Rgba16Float],
+            additive: false,
+            depth: false,
         };
-        Self { full_size: pipeline("gather_texel"), smaller: pipeline("gather") }
+        Self { pipeline: Pipeline::new(gpu, &blueprint) }
     }
 
-    /// Adds up all Gaussians, size by size.
-    pub fn steps(&self, gpu: &Gpu, kernel: &Kernel, levels: &Levels, target: &View) -> Vec<Step> {
-        let finest = &levels.all[0];
-        let mut steps = Vec::new();
-        for (number, size) in levels.sizes.iter().enumerate() {
-            let numbers = gaussians(kernel, levels, number);
-            if numbers.count == 0 {
-                continue;
-            }
-            let numbers = gpu.uniform("Gaussians", &numbers);
-            let own = [(1, Bound::Buffer(&numbers)), (3, Bound::Texture(&size.light.array))];
-            let clear = steps.is_empty();
-            if size.charts.size == finest.charts.size {
-                steps.push(over_charts(gpu, &self.full_size, &finest.charts, &own, &[target], clear));
-                continue;
-            }
-            let finer = levels.finer_than(number);
-            let others = [
-                (2, Bound::Texture(finest.charts.map.view())),
-                (4, Bound::Texture(size.charts.map.view())),
-                (5, Bound::Texture(&finer.light.array)),
-                (6, Bound::Texture(finer.charts.map.view())),
-                (7, Bound::Texture(&finest.light.array)),
-            ];
-            let bound = [own.as_slice(), &others].concat();
-            steps.push(over_charts(gpu, &self.smaller, &finest.charts, &bound, &[target], clear));
-        }
-        steps
+    /// Adds up all Gaussians.
+    pub fn step(
+        &self,
+        gpu: &Gpu,
+        kernel: &Kernel,
+        levels: &Levels,
+        charts: &ChartPyramid,
+        target: &View,
+    ) -> Step {
+        let numbers = gpu.uniform("Gaussians", &gaussians(kernel, levels));
+        let bound = [
+            (1, Bound::Buffer(&numbers)),
+            (2, Bound::Texture(&charts.all)),
+            (3, Bound::Texture(&levels.texture)),
+        ];
+        over_charts(gpu, &self.pipeline, &charts.sizes[0], &bound, &[target], false)
     }
 }
 
-/// Those whose levels have size number `size`.
-fn gaussians(kernel: &Kernel, levels: &Levels, size: usize) -> Gaussians {
-    let mut gaussians = Gaussians { finer_layer: levels.finer_than(size).last_layer, ..Gaussians::zeroed() };
-    for (i, weight) in kernel.weights.iter().enumerate().filter(|(i, _)| levels.size_of(*i) == size) {
-        let layer = levels.all[i + 1].light.first_layer;
-        gaussians.all[gaussians.count as usize] = Gaussian { weight: weight.to_array(), layer };
-        gaussians.count += 1;
+fn gaussians(kernel: &Kernel, levels: &Levels) -> Gaussians {
+    let mut gaussians = Gaussians::zeroed();
+    for (size, of_levels) in gaussians.sizes.iter_mut().zip(levels.sizes()) {
+        *size = of_levels;
+        gaussians.size_count += 1;
+    }
+    for ((gaussian, weight), level) in gaussians.all.iter_mut().zip(&kernel.weights).zip(&levels.all[1..]) {
+        *gaussian = Gaussian { weight: weight.to_array(), layer: level.light.first_layer };
     }
     gaussians
 }

@@ -1,13 +1,10 @@
 // The light under the surface: the kernel's sum of Gaussians, once for every texel rather than for every sample of the
-// picture. Each draw adds those whose levels have one size.
+// picture.
 
 @group(0) @binding(1) var<uniform> gaussians: Gaussians;
+/// Charts at the size of the irradiance and at smaller ones.
 @group(0) @binding(2) var charts: texture_2d<u32>;
 @group(0) @binding(3) var levels: texture_2d_array<f32>;
-@group(0) @binding(4) var level_charts: texture_2d<u32>;
-@group(0) @binding(5) var finer: texture_2d_array<f32>;
-@group(0) @binding(6) var finer_charts: texture_2d<u32>;
-@group(0) @binding(7) var finest: texture_2d_array<f32>;
 
 struct Gaussian {
     weight: vec3f,
@@ -17,46 +14,34 @@ struct Gaussian {
 
 struct Gaussians {
     all: array<Gaussian, MAX_GAUSSIANS>,
-    count: u32,
-    /// Layer of the last level one size up.
-    finer_layer: u32,
+    sizes: array<LevelSize, MAX_SIZES>,
+    size_count: u32,
     pad0: u32,
     pad1: u32,
-}
-
-/// For levels of full size, whose texels are those of the sum.
-@fragment
-fn gather_texel(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let texel = vec2i(position.xy);
-    var sum = vec3f(0.0);
-    var i = 0u;
-    loop {
-        sum += gaussians.all[i].weight * textureLoad(levels, texel, gaussians.all[i].layer, 0).rgb;
-        continuing {
-            i++;
-            break if i >= gaussians.count;
-        }
-    }
-    return vec4f(sum, 0.0);
+    pad2: u32,
 }
 
 @fragment
 fn gather(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let chart = textureLoad(charts, vec2i(position.xy), 0).x;
+    let texel = vec2i(position.xy);
+    let chart = textureLoad(charts, texel, 0).x;
     if chart == NO_CHART {
         return vec4f(0.0);
     }
-    let uv = position.xy / vec2f(textureDimensions(charts));
-    let here = on_levels(level_charts, uv, chart);
-    let instead = instead_of_level(finer, finer_charts, gaussians.finer_layer, finest, uv, chart).rgb;
     var sum = vec3f(0.0);
     var i = 0u;
-    loop {
-        let light = blend_layer(levels, gaussians.all[i].layer, here.texels, here.weights).rgb;
-        sum += gaussians.all[i].weight * select(instead, light, here.covered);
-        continuing {
-            i++;
-            break if i >= gaussians.count;
+    // Texels of levels of full size are those of the sum.
+    for (; i < gaussians.sizes[0].end; i++) {
+        sum += gaussians.all[i].weight * textureLoad(levels, texel, gaussians.all[i].layer, 0).rgb;
+    }
+    let uv = position.xy / vec2f(textureDimensions(charts, 0));
+    for (var s = 1u; s < gaussians.size_count; s++) {
+        let size = gaussians.sizes[s];
+        let here = on_levels(charts, size.halvings, uv, chart);
+        let instead = instead_of_level(levels, charts, size, uv, chart).rgb;
+        for (; i < size.end; i++) {
+            let light = on_layer(levels, gaussians.all[i].layer, here).rgb;
+            sum += gaussians.all[i].weight * select(instead, light, here.covered);
         }
     }
     return vec4f(sum, 0.0);

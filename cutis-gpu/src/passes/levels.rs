@@ -1,22 +1,25 @@
-//! Where the light lives before and after every Gaussian. Levels of one size are layers of one texture, so that a pass reads
-//! all of them at once.
+//! Where the light lives before and after every Gaussian: one texture, so that a pass reads all of it at once. Its layers
+//! are halved as often as its widest Gaussians need, and a level is some layers of one size.
 
 use crate::Gpu;
-use crate::map::Map;
+use crate::map::{Map, Pyramid, View};
 use crate::scene::charts::ChartTexture;
+use bytemuck::{Pod, Zeroable};
 use cutis_render::passes::diffusion::Action;
 use wgpu::TextureFormat as Format;
 
 /// Most Gaussians of a kernel; also in the shaders.
 pub const MAX_GAUSSIANS: usize = 16;
+/// Most sizes of levels: one for every Gaussian, and one for the light before; also in the shaders.
+pub const MAX_SIZES: usize = MAX_GAUSSIANS + 1;
 
 /// The light before any blur and after every Gaussian.
 #[derive(Debug)]
 pub struct Levels {
     /// Level 0 is unblurred; level i is blurred by the i-th variance.
     pub all: Vec<Level>,
-    /// The textures they live in, the largest first.
-    pub sizes: Vec<LevelSize>,
+    /// All levels of all sizes.
+    pub texture: View,
 }
 
 /// One blurred state of all layers.
@@ -26,51 +29,54 @@ pub struct Level {
     pub charts: ChartTexture,
     /// Irradiance with distance in alpha; with several lights, their distances in further layers.
     pub light: Map,
-    /// Which of the sizes it has.
-    pub size: usize,
 }
 
-/// All levels of one size.
-#[derive(Debug)]
+/// Gaussians whose levels have one size; its twin has the same name.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 pub struct LevelSize {
-    /// Their charts.
-    pub charts: ChartTexture,
-    /// Their layers, level by level.
-    pub light: Map,
-    /// Layer of the last of them.
-    pub last_layer: u32,
+    /// How often the first size is halved.
+    pub halvings: u32,
+    /// Number of the first of the Gaussians after these.
+    pub end: u32,
+    /// How often the size before is halved; the first has itself.
+    pub finer_halvings: u32,
+    /// First layer of the last level of the size before.
+    pub finer_layer: u32,
 }
 
-/// Number of the size and place among the levels of that size.
+/// How often the first size is halved, and the place among the levels of that size.
 type Place = [usize; 2];
 
 impl Levels {
-    /// Textures for what `actions` keep, `layers` layers for each level. `charts` are those of the first size and of every
+    /// A texture for what `actions` keep, `layers` layers for each level. `charts` are those of the first size and of every
     /// halved one.
     pub fn new(gpu: &Gpu, charts: &[ChartTexture], layers: u32, actions: &[Action]) -> Self {
         let (places, counts) = places(actions);
-        let size = |(charts, &count): (&ChartTexture, &usize)| {
-            let all = count as u32 * layers;
-            let light = Map::square(gpu, "levels", charts.size, all, Format::Rgba16Float);
-            LevelSize { charts: charts.clone(), light, last_layer: all - layers }
+        let most = counts.iter().max().map_or(1, |&count| count as u32);
+        let halvings = counts.len() as u32 - 1;
+        let pyramid =
+            Pyramid::new(gpu, "levels", charts[0].size, [most * layers, halvings], Format::Rgba16Float);
+        let level = |[halvings, place]: Place| Level {
+            charts: charts[halvings].clone(),
+            light: pyramid.part(halvings as u32, place as u32 * layers, layers),
         };
-        let sizes: Vec<_> = charts.iter().zip(&counts).filter(|(_, count)| **count > 0).map(size).collect();
-        let level = |[halvings, place]: Place| {
-            let size = counts[..halvings].iter().filter(|count| **count > 0).count();
-            let LevelSize { charts, light, .. } = &sizes[size];
-            Level { charts: charts.clone(), light: light.part(place as u32 * layers, layers), size }
-        };
-        Self { all: places.into_iter().map(level).collect(), sizes }
+        Self { all: places.into_iter().map(level).collect(), texture: pyramid.array }
     }
 
-    /// Number of the size of a Gaussian's level.
-    pub fn size_of(&self, gaussian: usize) -> usize {
-        self.all[gaussian + 1].size
-    }
-
-    /// The size before one; the largest has itself.
-    pub fn finer_than(&self, size: usize) -> &LevelSize {
-        &self.sizes[size.saturating_sub(1)]
+    /// The Gaussians by the sizes of their levels, the largest first. The first entry is of full size and may be empty.
+    pub fn sizes(&self) -> Vec<LevelSize> {
+        let mut sizes = vec![LevelSize::zeroed()];
+        for (end, pair) in (1..).zip(self.all.windows(2)) {
+            let (before, halvings) = (&pair[0].light, pair[1].light.halvings);
+            if halvings > before.halvings {
+                let (finer_halvings, finer_layer) = (before.halvings, before.first_layer);
+                sizes.push(LevelSize { halvings, finer_halvings, finer_layer, end });
+            }
+            let last = sizes.len() - 1;
+            sizes[last].end = end;
+        }
+        sizes
     }
 }
 

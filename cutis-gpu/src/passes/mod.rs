@@ -9,6 +9,7 @@ pub mod downsample;
 pub mod gather;
 pub mod irradiance;
 pub mod levels;
+pub mod openness;
 pub mod resolve;
 pub mod shadow;
 pub mod shares;
@@ -39,6 +40,8 @@ pub struct Passes {
     pub stretch: stretch::StretchPass,
     /// Pass `atlas`.
     pub atlas: atlas::AtlasPass,
+    /// Pass `openness`.
+    pub openness: openness::OpennessPass,
     /// Pass `shadow map`.
     pub shadow: shadow::ShadowPass,
     /// Pass `shadows`.
@@ -66,22 +69,24 @@ pub struct Passes {
 impl Passes {
     /// Compiles all of them.
     pub fn new(gpu: &Gpu) -> Self {
+        let samplers = Samplers::new(gpu);
         Self {
-            samplers: Samplers::new(gpu),
             deform: deform::DeformPass::new(gpu),
             stretch: stretch::StretchPass::new(gpu),
             atlas: atlas::AtlasPass::new(gpu),
+            openness: openness::OpennessPass::new(gpu),
             shadow: shadow::ShadowPass::new(gpu),
             visibility: visibility::VisibilityPass::new(gpu),
             irradiance: irradiance::IrradiancePass::new(gpu),
             shares: shares::SharesPass::new(gpu),
-            diffusion: diffusion::DiffusionPass::new(gpu),
+            diffusion: diffusion::DiffusionPass::new(gpu, &samplers),
             gather: gather::GatherPass::new(gpu),
             transmission: transmission::TransmissionPass::new(gpu),
             resolve: resolve::ResolvePass::new(gpu),
             downsample: downsample::DownsamplePass::new(gpu),
             bloom: bloom::BloomPass::new(gpu),
             tone_map: tone_map::ToneMapPass::new(gpu),
+            samplers,
         }
     }
 }
@@ -89,6 +94,8 @@ impl Passes {
 /// The ways in which textures are read.
 #[derive(Debug)]
 pub struct Samplers {
+    /// The nearest texel; the edge goes on outside.
+    pub nearest: wgpu::Sampler,
     /// Bilinear; the edge goes on outside.
     pub linear: wgpu::Sampler,
     /// Bilinear; repeats.
@@ -100,21 +107,23 @@ pub struct Samplers {
 impl Samplers {
     fn new(gpu: &Gpu) -> Self {
         use wgpu::{AddressMode, FilterMode};
-        let sampler = |label, u, v| {
+        let sampler = |label, filter, u, v| {
             gpu.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some(label),
                 address_mode_u: u,
                 address_mode_v: v,
-                mag_filter: FilterMode::Linear,
-                min_filter: FilterMode::Linear,
+                mag_filter: filter,
+                min_filter: filter,
                 ..wgpu::SamplerDescriptor::default()
             })
         };
         let (clamp, repeat) = (AddressMode::ClampToEdge, AddressMode::Repeat);
+        let linear = FilterMode::Linear;
         Self {
-            linear: sampler("linear", clamp, clamp),
-            repeating: sampler("repeating", repeat, repeat),
-            around_sky: sampler("around the sky", repeat, clamp),
+            nearest: sampler("nearest", FilterMode::Nearest, clamp, clamp),
+            linear: sampler("linear", linear, clamp, clamp),
+            repeating: sampler("repeating", linear, repeat, repeat),
+            around_sky: sampler("around the sky", linear, repeat, clamp),
         }
     }
 }

@@ -1,6 +1,7 @@
 // Where the taps of one blur step along one axis lie, by the local stretch, and the stretch blurred by them
-// (d'Eon, Luebke & Enderton 2007, sections 5.1 and 5.4). The twin of cutis-render's `lines`, texel by texel. All of it
-// follows from the geometry alone, and is done again only when that has changed.
+// (d'Eon, Luebke & Enderton 2007, sections 5.1 and 5.4). The twin of cutis-render's `lines`. All of it follows from the
+// geometry alone, and is done again only when that has changed; it changes slowly over the surface, so that half the size of
+// the light will do. Texels are those of the light, unless they are called half ones.
 
 @group(0) @binding(1) var<uniform> widening: Widening;
 @group(0) @binding(2) var charts: texture_2d<u32>;
@@ -31,19 +32,15 @@ struct Laid {
 
 const VARIANCES: u32 = 512u;
 const NARROW_TEXEL2: f32 = 1.0;
-/// Deviations that `blur.wgsl` takes in.
-const DEVIATIONS: f32 = 3.3;
-/// What that leaves out, as a share of the variance, on the mean.
+/// What `blur.wgsl` leaves out, as a share of the variance, on the mean.
 const LEFT_OUT: f32 = 0.005;
 /// Variance in texel² below which a sampled Gaussian has noticeably less of it than its formula says.
 const UNDERSAMPLED_TEXEL2: f32 = 0.6;
 
-fn step_texels() -> vec2i {
-    return select(vec2i(1, 0), vec2i(0, 1), widening.axis == 1u);
-}
-
-fn texel_mm_at(texel: vec2i) -> f32 {
-    return textureLoad(stretch_map, texel, 0)[widening.axis];
+/// The stretch so many texels away.
+fn stretch_at(half_texel: vec2i, away: f32) -> vec2f {
+    let step = select(vec2i(1, 0), vec2i(0, 1), widening.axis == 1u);
+    return textureLoad(stretch_map, half_texel + i32(round(0.5 * away)) * step, 0).xy;
 }
 
 fn discrete_variance(variance_texel2: f32) -> f32 {
@@ -56,12 +53,12 @@ fn discrete_variance(variance_texel2: f32) -> f32 {
 }
 
 /// Distances in texels of three taps on one side, the same distance of surface apart.
-fn distances(texel: vec2i, texel_mm: f32, spacing: f32, reach: f32, side: i32) -> vec3f {
-    let ahead = vec3i(min(vec3f(0.5, 1.5, 2.5) * spacing, vec3f(reach))) * side;
-    let step = step_texels();
-    let a = spacing * texel_mm / texel_mm_at(texel + ahead.x * step);
-    let b = a + spacing * texel_mm / texel_mm_at(texel + ahead.y * step);
-    let c = b + spacing * texel_mm / texel_mm_at(texel + ahead.z * step);
+fn distances(half_texel: vec2i, texel_mm: f32, spacing: f32, reach: f32, side: f32) -> vec3f {
+    let ahead = min(vec3f(0.5, 1.5, 2.5) * spacing, vec3f(reach)) * side;
+    let axis = widening.axis;
+    let a = spacing * texel_mm / stretch_at(half_texel, ahead.x)[axis];
+    let b = a + spacing * texel_mm / stretch_at(half_texel, ahead.y)[axis];
+    let c = b + spacing * texel_mm / stretch_at(half_texel, ahead.z)[axis];
     return min(vec3f(a, b, c), vec3f(reach));
 }
 
@@ -79,41 +76,28 @@ fn sampled_variance(variance_texel2: f32) -> f32 {
     return v;
 }
 
-/// The stretch at the texel nearest to a tap.
-fn stretch_near(texel: vec2i, tap: f32) -> vec2f {
-    return textureLoad(stretch_map, texel + i32(round(tap)) * step_texels(), 0).xy;
-}
-
 @fragment
 fn lay_taps(@builtin(position) position: vec4f) -> Laid {
-    let texel = vec2i(position.xy);
-    let own = textureLoad(charts, texel, 0).xy;
+    let half_texel = vec2i(position.xy);
+    let own = textureLoad(charts, half_texel, 0).xy;
     if own.x == NO_CHART {
         return Laid(vec2f(0.0), vec2f(0.0));
     }
-    let reach = f32((own.y >> (8u * widening.axis)) & 255u);
-    let texel_mm = texel_mm_at(texel);
+    // Of half texels, of which none beyond may be read.
+    let reach = 2.0 * f32((own.y >> (8u * widening.axis)) & 255u);
+    let texel_mm = stretch_at(half_texel, 0.0)[widening.axis];
     let texel2_mm2 = texel_mm * texel_mm;
     let wanted = discrete_variance(widening.to_mm2 / texel2_mm2) - discrete_variance(widening.from_mm2 / texel2_mm2)
         - widening.saved_texel2;
-    // Towards a seam taps come closer, so that none leaves the chart.
-    let widest = max((reach - 0.5) / DEVIATIONS, 0.0);
-    let variance = clamp(wanted, 0.0, widest * widest);
-    let spacing = sqrt(variance / widening.unit_variance);
-    let near = distances(texel, texel_mm, spacing, reach, 1);
-    let far = distances(texel, texel_mm, spacing, reach, -1);
+    let spacing = sqrt(max(wanted, 0.0) / widening.unit_variance);
+    let near = distances(half_texel, texel_mm, spacing, reach, 1.0);
+    let far = distances(half_texel, texel_mm, spacing, reach, -1.0);
     let weights = widening.weights;
-    let stretch = stretch_near(texel, 0.0) * weights.x
-        + (stretch_near(texel, near.x) + stretch_near(texel, -far.x)) * weights.y
-        + (stretch_near(texel, near.y) + stretch_near(texel, -far.y)) * weights.z
-        + (stretch_near(texel, near.z) + stretch_near(texel, -far.z)) * weights.w;
+    let stretch = stretch_at(half_texel, 0.0) * weights.x
+        + (stretch_at(half_texel, near.x) + stretch_at(half_texel, -far.x)) * weights.y
+        + (stretch_at(half_texel, near.y) + stretch_at(half_texel, -far.y)) * weights.z
+        + (stretch_at(half_texel, near.z) + stretch_at(half_texel, -far.z)) * weights.w;
     // The variance of the taps on either side, which lie evenly on the surface and not in the texture.
     let sides = 2.0 * vec2f(dot(weights.yzw, near * near), dot(weights.yzw, far * far));
-    return Laid(
-        vec2f(
-            min(sampled_variance(sides.x), widest * widest),
-            min(sampled_variance(sides.y), widest * widest),
-        ),
-        stretch,
-    );
+    return Laid(vec2f(sampled_variance(sides.x), sampled_variance(sides.y)), stretch);
 }

@@ -4,11 +4,11 @@
 use crate::Gpu;
 use crate::map::{Map, View};
 use crate::passes::atlas::AtlasMaps;
-use crate::passes::levels::{Levels, MAX_GAUSSIANS};
+use crate::passes::levels::{LevelSize, Levels, MAX_GAUSSIANS, MAX_SIZES};
 use crate::passes::over_tiles;
 use crate::passes::shadow::ShadowMaps;
 use crate::pipeline::{Blueprint, Bound, Pipeline};
-use crate::scene::charts::ChartTexture;
+use crate::scene::charts::{ChartPyramid, ChartTexture};
 use crate::shaders;
 use crate::step::{Draw, Step};
 use bytemuck::{Pod, Zeroable};
@@ -28,24 +28,26 @@ pub struct Slab {
     pub variance_mm2: f32,
     /// Layer of its level, for the light.
     pub layer: u32,
-    /// Layer of the level before, for the distance.
-    pub before: u32,
-    /// 1 if that one is one size up.
-    pub before_is_finer: u32,
+    /// First layer of the level before, for the distance.
+    pub before_layer: u32,
+    /// How often that one is halved.
+    pub before_halvings: u32,
     /// Fills up the struct.
     pub pad0: u32,
 }
 
-/// The Gaussians whose levels have one size; its twin has the same name.
+/// All Gaussians of a body; its twin has the same name.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Slabs {
     /// The first `count` of them count.
     pub all: [Slab; MAX_GAUSSIANS],
-    /// How many there are.
+    /// The same by the sizes of their levels; the first `size_count` of them count.
+    pub sizes: [LevelSize; MAX_SIZES],
+    /// How many Gaussians there are.
     pub count: u32,
-    /// Layer of the last level one size up.
-    pub finer_layer: u32,
+    /// How many sizes there are.
+    pub size_count: u32,
     /// Number of the object.
     pub object: u32,
     /// 1 if every light has a share of its own.
@@ -77,8 +79,8 @@ pub struct TransmissionInputs<'a> {
     pub kernel: &'a Kernel,
     /// Its unrolled surface.
     pub atlas: &'a AtlasMaps,
-    /// Its charts at half the size.
-    pub half_charts: &'a ChartTexture,
+    /// Its charts.
+    pub charts: &'a ChartPyramid,
     /// What the lights see.
     pub shadows: &'a ShadowMaps,
     /// Share of each light; none with a single one.
@@ -98,15 +100,15 @@ pub struct TransmissionPass {
 impl TransmissionPass {
     /// Compiles them.
     pub fn new(gpu: &Gpu) -> Self {
-        let pipeline = |source, entries, format, additive| {
+        let pipeline = |source, entries, format| {
             let (name, targets) = ("transmission", &[format]);
-            Pipeline::new(gpu, &Blueprint { name, source, entries, targets, additive, depth: false })
+            Pipeline::new(gpu, &Blueprint { name, source, entries, targets, additive: false, depth: false })
         };
         let light = Format::Rgba16Float;
         Self {
-            mark: pipeline(shaders::TRANSMISSION, ["cover_marks", "mark_thin"], Format::R8Unorm, true),
-            transmit: pipeline(shaders::TRANSMISSION, ["cover_thin_tile", "transmit"], light, true),
-            smooth: pipeline(shaders::SMOOTH, ["cover_thin_tile", "smooth_map"], light, false),
+            mark: pipeline(shaders::TRANSMISSION, ["cover_marks", "mark_thin"], Format::R8Unorm),
+            transmit: pipeline(shaders::TRANSMISSION, ["cover_thin_tile", "transmit"], light),
+            smooth: pipeline(shaders::SMOOTH, ["cover_thin_tile", "smooth_map"], light),
         }
     }
 
@@ -120,67 +122,52 @@ impl TransmissionPass {
         maps: [Map; 2],
     ) -> (Vec<Step>, Map) {
         let [mut from, mut to] = maps;
-        let marks_size = inputs.half_charts.size.div_ceil(TEXELS_OF_MARK);
+        let half_charts = &inputs.charts.sizes[1];
+        let marks_size = half_charts.size.div_ceil(TEXELS_OF_MARK);
         let marks = Map::square(gpu, "thin places", marks_size, 1, Format::R8Unorm);
-        let sizes: Vec<_> = (0..inputs.levels.sizes.len())
-            .map(|size| (size, slabs(inputs, size)))
-            .filter(|(_, slabs)| slabs.count > 0)
-            .map(|(size, slabs)| (size, gpu.uniform("slabs", &slabs)))
-            .collect();
-        let mut steps = Vec::new();
-        for (i, (size, slabs)) in sizes.iter().enumerate() {
-            steps.push(self.mark(gpu, inputs, (*size, slabs), marks.view(), i == 0));
-        }
-        for (i, (size, slabs)) in sizes.iter().enumerate() {
-            steps.push(self.transmit(gpu, inputs, (*size, slabs), &marks, from.view(), i == 0));
-        }
+        let slabs = gpu.uniform("slabs", &slabs(inputs));
+        let mut steps = vec![
+            self.mark(gpu, inputs, &slabs, marks.view()),
+            self.transmit(gpu, inputs, &slabs, &marks, from.view()),
+        ];
         let mut reach = 0;
         for &round in rounds {
             // Two steps to either side.
             reach += 2 * round as i32;
             let numbers = Smoothing { step: round as i32, reach, ..Smoothing::zeroed() };
-            steps.push(self.smooth(gpu, numbers, inputs.half_charts, &marks, [&from, &to]));
+            steps.push(self.smooth(gpu, numbers, half_charts, &marks, [&from, &to]));
             std::mem::swap(&mut from, &mut to);
         }
         (steps, from)
     }
 
     /// Marks where light may come through.
-    fn mark(
-        &self,
-        gpu: &Gpu,
-        inputs: &TransmissionInputs,
-        (size, slabs): (usize, &wgpu::Buffer),
-        target: &View,
-        clear: bool,
-    ) -> Step {
-        let all = bound(inputs, size, slabs);
-        let read: Vec<_> = all.into_iter().filter(|(binding, _)| MARK_READS.contains(binding)).collect();
+    fn mark(&self, gpu: &Gpu, inputs: &TransmissionInputs, slabs: &wgpu::Buffer, target: &View) -> Step {
         Step::Draw(Draw {
             pipeline: self.mark.clone(),
-            bind_groups: vec![self.mark.bind(gpu, 0, &read)],
+            bind_groups: vec![self.mark.bind(gpu, 0, &bound(inputs, slabs)[..MARK_READS])],
             targets: vec![target.clone()],
             depth: None,
-            clear: clear.then_some(wgpu::Color::TRANSPARENT),
+            clear: None,
             vertices: 3,
             instances: 1,
         })
     }
 
-    /// Adds what comes through by the Gaussians of a size.
+    /// Adds up what comes through by all Gaussians.
     fn transmit(
         &self,
         gpu: &Gpu,
         inputs: &TransmissionInputs,
-        (size, slabs): (usize, &wgpu::Buffer),
+        slabs: &wgpu::Buffer,
         marks: &Map,
         target: &View,
-        clear: bool,
     ) -> Step {
-        let mut all = bound(inputs, size, slabs);
+        let mut all = bound(inputs, slabs);
         all.push((MARKS, Bound::Texture(marks.view())));
-        let tiles = (&inputs.half_charts.single_tiles, inputs.half_charts.tile_count);
-        over_tiles(gpu, &self.transmit, tiles, &all, &[target], clear)
+        let half_charts = &inputs.charts.sizes[1];
+        let tiles = (&half_charts.single_tiles, half_charts.tile_count);
+        over_tiles(gpu, &self.transmit, tiles, &all, &[target], true)
     }
 
     fn smooth(
@@ -203,55 +190,55 @@ impl TransmissionPass {
     }
 }
 
+/// In place of no variance at all, by which nothing may be divided: deviations of a nanometre.
+const LEAST_VARIANCE_MM2: f32 = 1e-12;
 /// Where the marks are bound.
 const MARKS: u32 = 20;
-/// What of [`bound`] marking reads.
-const MARK_READS: [u32; 7] = [1, 2, 3, 4, 10, 12, 14];
+/// How many of [`bound`] marking reads: the first ones.
+const MARK_READS: usize = 4;
 
-fn bound<'a>(inputs: &TransmissionInputs<'a>, size: usize, slabs: &'a wgpu::Buffer) -> Vec<(u32, Bound<'a>)> {
-    let TransmissionInputs { lights, half_charts, atlas, shadows, levels, .. } = *inputs;
-    let (own, finer, finest) = (&levels.sizes[size], levels.finer_than(size), &levels.all[0]);
+fn bound<'a>(inputs: &TransmissionInputs<'a>, slabs: &'a wgpu::Buffer) -> Vec<(u32, Bound<'a>)> {
+    let TransmissionInputs { lights, charts, atlas, shadows, levels, .. } = *inputs;
     // A single light's share is not read; something has to be bound.
-    let shares = inputs.shares.unwrap_or(&finest.light);
+    let shares = inputs.shares.map_or(&levels.all[0].light.array, |shares| &shares.array);
     vec![
         (1, Bound::Buffer(slabs)),
         (2, Bound::Buffer(lights)),
-        (3, Bound::Texture(half_charts.map.view())),
-        (4, Bound::Texture(finest.charts.map.view())),
+        (3, Bound::Texture(&charts.all)),
+        (4, Bound::Texture(&levels.texture)),
         (5, Bound::Texture(atlas.places.view())),
         (6, Bound::Texture(atlas.stretch.view())),
         (7, Bound::Texture(&shadows.depths.array)),
         (8, Bound::Texture(&shadows.surfaces.array)),
-        (9, Bound::Texture(&shares.array)),
-        (10, Bound::Texture(&own.light.array)),
-        (11, Bound::Texture(own.charts.map.view())),
-        (12, Bound::Texture(&finer.light.array)),
-        (13, Bound::Texture(finer.charts.map.view())),
-        (14, Bound::Texture(&finest.light.array)),
+        (9, Bound::Texture(shares)),
     ]
 }
 
-/// The Gaussians whose levels have size number `size`. One without width lets nothing through.
-fn slabs(inputs: &TransmissionInputs, size: usize) -> Slabs {
+/// The Gaussians of the object's kernel.
+fn slabs(inputs: &TransmissionInputs) -> Slabs {
     let TransmissionInputs { kernel, levels, .. } = inputs;
     let mut slabs = Slabs {
-        finer_layer: levels.finer_than(size).last_layer,
         object: inputs.object,
         many_lights: u32::from(inputs.shares.is_some()),
+        count: kernel.weights.len() as u32,
         ..Slabs::zeroed()
     };
-    let wide = |i: &usize| levels.size_of(*i) == size && kernel.variances_mm2[*i] > 0.0;
-    for i in (0..kernel.weights.len()).filter(wide) {
-        let (before, level) = (&levels.all[i], &levels.all[i + 1]);
-        slabs.all[slabs.count as usize] = Slab {
-            weight: kernel.weights[i].to_array(),
-            variance_mm2: kernel.variances_mm2[i],
-            layer: level.light.first_layer,
-            before: before.light.first_layer,
-            before_is_finer: u32::from(before.size != size),
+    for (size, of_levels) in slabs.sizes.iter_mut().zip(levels.sizes()) {
+        *size = of_levels;
+        slabs.size_count += 1;
+    }
+    let gaussians = kernel.weights.iter().zip(&kernel.variances_mm2).zip(levels.all.windows(2));
+    for (slab, ((weight, &variance_mm2), pair)) in slabs.all.iter_mut().zip(gaussians) {
+        let [before, level] = [&pair[0].light, &pair[1].light];
+        *slab = Slab {
+            // One without width lets nothing through.
+            weight: if variance_mm2 > 0.0 { weight.to_array() } else { [0.0; 3] },
+            variance_mm2: variance_mm2.max(LEAST_VARIANCE_MM2),
+            layer: level.first_layer,
+            before_layer: before.first_layer,
+            before_halvings: before.halvings,
             ..Slab::zeroed()
         };
-        slabs.count += 1;
     }
     slabs
 }

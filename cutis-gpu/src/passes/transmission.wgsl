@@ -1,40 +1,35 @@
 // Light that comes through the body (d'Eon, Luebke & Enderton 2007, sections 5.2 and 5.4; equation 16 with exp(-d²/2v)), at
-// half the size of the irradiance. Each draw adds the Gaussians whose levels have one size.
+// half the size of the irradiance.
 //
 // Most of a body is opaque or lit: the thin places are marked first, and only tiles that hold some are drawn.
 
 @group(0) @binding(1) var<uniform> slabs: Slabs;
 @group(0) @binding(2) var<storage, read> lights: array<Light>;
+/// Charts at the size of the irradiance and at smaller ones.
 @group(0) @binding(3) var charts: texture_2d<u32>;
-@group(0) @binding(4) var atlas_charts: texture_2d<u32>;
+@group(0) @binding(4) var levels: texture_2d_array<f32>;
 @group(0) @binding(5) var places: texture_2d<u32>;
 @group(0) @binding(6) var stretch_map: texture_2d<f32>;
 @group(0) @binding(7) var depths: texture_2d_array<f32>;
 @group(0) @binding(8) var surfaces: texture_2d_array<u32>;
 @group(0) @binding(9) var shares: texture_2d_array<f32>;
-@group(0) @binding(10) var levels: texture_2d_array<f32>;
-@group(0) @binding(11) var level_charts: texture_2d<u32>;
-@group(0) @binding(12) var finer: texture_2d_array<f32>;
-@group(0) @binding(13) var finer_charts: texture_2d<u32>;
-@group(0) @binding(14) var finest: texture_2d_array<f32>;
 
 struct Slab {
     weight: vec3f,
     variance_mm2: f32,
     /// Layer of its level, for the light.
     layer: u32,
-    /// Layer of the level before, for the distance.
-    before: u32,
-    /// 1 if that one is one size up.
-    before_is_finer: u32,
+    /// First layer of the level before, for the distance, and how often that one is halved.
+    before_layer: u32,
+    before_halvings: u32,
     pad0: u32,
 }
 
 struct Slabs {
     all: array<Slab, MAX_GAUSSIANS>,
+    sizes: array<LevelSize, MAX_SIZES>,
     count: u32,
-    /// Layer of the last level one size up.
-    finer_layer: u32,
+    size_count: u32,
     object: u32,
     /// 1 if every light has a share of its own.
     many_lights: u32,
@@ -50,15 +45,12 @@ struct Under {
     chart: u32,
     texel: vec2i,
     uv: vec2f,
-    own: OnLevels,
-    finer: OnLevels,
 }
 
 fn under(texel: vec2i) -> Under {
-    let chart = textureLoad(charts, texel, 0).x;
+    let chart = textureLoad(charts, texel, 1).x;
     let fine = point_under(chart, 2 * texel);
-    let uv = (vec2f(fine) + 0.5) / vec2f(textureDimensions(places));
-    return Under(chart, fine, uv, on_levels(level_charts, uv, chart), on_levels(finer_charts, uv, chart));
+    return Under(chart, fine, (vec2f(fine) + 0.5) / vec2f(textureDimensions(places)));
 }
 
 @vertex
@@ -79,7 +71,7 @@ fn mark_thin(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var i = 0;
     loop {
         let texel = corner + vec2i(i % TEXELS_OF_MARK, i / TEXELS_OF_MARK);
-        let chart = textureLoad(charts, texel, 0).x;
+        let chart = textureLoad(charts, texel, 1).x;
         let fine = point_under(chart, 2 * texel);
         var l = 0u;
         loop {
@@ -100,17 +92,14 @@ fn mark_thin(@builtin(position) position: vec4f) -> @location(0) vec4f {
 /// The most that any Gaussian lets through of a light, by the nearest texels; nothing where the light is faced.
 fn most_through(l: u32, texel: vec2i) -> f32 {
     let component = component_of(l);
-    let faces = textureLoad(finest, texel, layer_of(0u, l), 0)[component] <= 0.0;
-    let uv = (vec2f(texel) + 0.5) / vec2f(textureDimensions(finest));
-    let own_texel = vec2i(uv * vec2f(textureDimensions(levels)));
-    let finer_texel = vec2i(uv * vec2f(textureDimensions(finer)));
+    let faces = textureLoad(levels, texel, layer_of(0u, l), 0)[component] <= 0.0;
+    let uv = (vec2f(texel) + 0.5) / vec2f(textureDimensions(levels, 0));
     var most = 0.0;
     var i = 0u;
     loop {
-        let layer = layer_of(slabs.all[i].before, l);
-        let own = textureLoad(levels, own_texel, layer, 0);
-        let one_up = textureLoad(finer, finer_texel, layer, 0);
-        let d_mm = select(own, one_up, slabs.all[i].before_is_finer == 1u)[component];
+        let before = vec2i(uv * vec2f(textureDimensions(levels, slabs.all[i].before_halvings)));
+        let layer = layer_of(slabs.all[i].before_layer, l);
+        let d_mm = textureLoad(levels, before, layer, slabs.all[i].before_halvings)[component];
         most = max(most, slab_weight(d_mm, slabs.all[i].variance_mm2));
         continuing {
             i++;
@@ -147,18 +136,24 @@ fn transmit(@builtin(position) position: vec4f) -> @location(0) vec4f {
 
 /// Light of one place that comes through to another by all Gaussians.
 fn through_all(l: u32, here: Under, there: LightFacing, apart_mm: f32) -> vec3f {
-    let lit = on_levels(level_charts, there.uv, there.chart);
-    let instead = instead_of_level(finer, finer_charts, slabs.finer_layer, finest, there.uv, there.chart).rgb;
     var sum = vec3f(0.0);
     var i = 0u;
-    loop {
-        let variance_mm2 = slabs.all[i].variance_mm2;
-        let through = slab_weight(distance_before_mm(i, l, here), variance_mm2) * fade_out(apart_mm, variance_mm2);
-        let light = select(instead, blend_layer(levels, slabs.all[i].layer, lit.texels, lit.weights).rgb, lit.covered);
-        sum += slabs.all[i].weight * light * select(0.0, through, through > VISIBLE);
-        continuing {
-            i++;
-            break if i >= slabs.count;
+    for (var s = 0u; s < slabs.size_count; s++) {
+        let size = slabs.sizes[s];
+        let finer = on_levels(charts, size.finer_halvings, here.uv, here.chart);
+        let own = on_levels(charts, size.halvings, here.uv, here.chart);
+        let lit = on_levels(charts, size.halvings, there.uv, there.chart);
+        let instead = instead_of_level(levels, charts, size, there.uv, there.chart).rgb;
+        for (; i < size.end; i++) {
+            let slab = slabs.all[i];
+            var before = own;
+            if slab.before_halvings != size.halvings {
+                before = finer;
+            }
+            let d_mm = distance_mm(l, here, before, slab.before_layer);
+            let through = slab_weight(d_mm, slab.variance_mm2) * fade_out(apart_mm, slab.variance_mm2);
+            let light = select(instead, on_layer(levels, slab.layer, lit).rgb, lit.covered);
+            sum += slab.weight * light * select(0.0, through, through > VISIBLE);
         }
     }
     return sum;
@@ -168,7 +163,7 @@ fn through_all(l: u32, here: Under, there: LightFacing, apart_mm: f32) -> vec3f 
 fn point_under(chart: u32, corner: vec2i) -> vec2i {
     for (var i = 0; i < 4; i++) {
         let texel = corner + vec2i(i & 1, i >> 1u);
-        if textureLoad(atlas_charts, texel, 0).x == chart {
+        if textureLoad(charts, texel, 0).x == chart {
             return texel;
         }
     }
@@ -186,14 +181,10 @@ fn component_of(l: u32) -> u32 {
 }
 
 /// The distance towards a light, blurred by the Gaussian before, mm.
-fn distance_before_mm(i: u32, l: u32, here: Under) -> f32 {
-    let layer = layer_of(slabs.all[i].before, l);
-    let is_finer = slabs.all[i].before_is_finer == 1u;
-    let own = blend_layer(levels, layer, here.own.texels, here.own.weights);
-    let one_up = blend_layer(finer, layer, here.finer.texels, here.finer.weights);
-    let unblurred = textureLoad(finest, here.texel, layer_of(0u, l), 0);
-    let covered = select(here.own.covered, here.finer.covered, is_finer);
-    return select(unblurred, select(own, one_up, is_finer), covered)[component_of(l)];
+fn distance_mm(l: u32, here: Under, before: OnLevels, before_layer: u32) -> f32 {
+    let blurred = on_layer(levels, layer_of(before_layer, l), before);
+    let unblurred = textureLoad(levels, here.texel, layer_of(0u, l), 0);
+    return select(unblurred, blurred, before.covered)[component_of(l)];
 }
 
 /// Share of a light in what falls on its light-facing side, so that light counted once is not counted again.
@@ -202,7 +193,7 @@ fn share(l: u32, there: LightFacing) -> f32 {
         return 1.0;
     }
     let texels = around(there.uv, textureDimensions(shares));
-    return blend_layer(shares, l / 4u, texels, chart_weights(atlas_charts, texels, there.chart))[l % 4u];
+    return blend_layer(shares, l / 4u, texels, chart_weights(charts, texels, there.chart))[l % 4u];
 }
 
 /// Distance along the surface to the light-facing place, mm. Within a chart the texture tells. Between charts no blur has

@@ -1,7 +1,7 @@
 //! Charts as shaders read them, and the tiles of a map that they cover.
 
 use crate::Gpu;
-use crate::map::Map;
+use crate::map::{Map, Pyramid, View};
 use crate::passes::TILE_TEXELS;
 use cutis_render::passes::atlas::{Atlas, ChartMap, NO_CHART};
 
@@ -9,6 +9,30 @@ use cutis_render::passes::atlas::{Atlas, ChartMap, NO_CHART};
 const MAX_REACH: u16 = 255;
 /// In place of a chart: none.
 const NO_CODE: u16 = u16::MAX;
+
+/// The charts of a map and of halved ones.
+#[derive(Debug, Clone)]
+pub struct ChartPyramid {
+    /// The largest first, each half of the one before.
+    pub sizes: Vec<ChartTexture>,
+    /// All of them for shaders that choose one.
+    pub all: View,
+}
+
+impl ChartPyramid {
+    /// Uploads a map of charts and what halving it so often gives.
+    pub fn new(gpu: &Gpu, charts: &ChartMap, halvings: usize) -> Self {
+        let size = charts.size as u32;
+        let pyramid = Pyramid::new(gpu, "charts", size, [1, halvings as u32], wgpu::TextureFormat::Rg16Uint);
+        let mut charts = charts.clone();
+        let mut sizes = vec![ChartTexture::new(gpu, &charts, pyramid.part(0, 0, 1))];
+        for halving in 1..=halvings {
+            charts = charts.halved();
+            sizes.push(ChartTexture::new(gpu, &charts, pyramid.part(halving as u32, 0, 1)));
+        }
+        Self { sizes, all: pyramid.first }
+    }
+}
 
 /// Which chart every texel of a map belongs to.
 #[derive(Debug, Clone)]
@@ -28,14 +52,14 @@ pub struct ChartTexture {
 }
 
 impl ChartTexture {
-    /// Uploads a map of charts.
-    pub fn new(gpu: &Gpu, charts: &ChartMap) -> Self {
+    /// Fills a texture with a map of charts of its size.
+    fn new(gpu: &Gpu, charts: &ChartMap, map: Map) -> Self {
         let size = charts.size as u32;
         let texels = charts.chart.iter().zip(&charts.reach_u).zip(&charts.reach_v);
         let codes = texels
             .flat_map(|((&chart, &u), &v)| [chart_code(chart), u.min(MAX_REACH) | v.min(MAX_REACH) << 8]);
         let bytes: Vec<u8> = codes.flat_map(u16::to_le_bytes).collect();
-        let map = Map::filled(gpu, "charts", [size, size], wgpu::TextureFormat::Rg16Uint, &bytes);
+        map.write(gpu, 0, &bytes);
         let runs = runs(charts);
         let singles = single_tiles(&runs);
         let buffer = |label, codes: &[u32]| gpu.storage(label, &[&[size], codes].concat());

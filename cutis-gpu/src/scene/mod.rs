@@ -15,6 +15,7 @@ pub mod posing;
 pub mod reach;
 pub mod relight;
 pub mod shared;
+pub mod surroundings;
 
 use crate::cost::Cost;
 use crate::passes::Passes;
@@ -24,11 +25,10 @@ use crate::step::Step;
 use crate::timing::Timing;
 use crate::{Gpu, GpuError};
 use bytemuck::Zeroable;
-use cutis_render::passes::ambient::Ambient;
 use cutis_render::prepare::FilteredEnvironment;
 use cutis_render::technique::texture_space::{atlas_sizes, chosen_kernel};
 use cutis_render::{PassTime, Progress, RenderError, Settings};
-use cutis_scene::{Bvh, Camera, Pose, PoseError, Scene};
+use cutis_scene::{Camera, Pose, PoseError, Scene};
 use development::Development;
 use glam::Vec4;
 use object::{ObjectMaps, ObjectSteps, Prepared};
@@ -122,22 +122,14 @@ impl GpuScene {
         settings: &Settings,
         progress: &dyn Progress,
     ) -> Result<Vec<ObjectSteps>, SceneError> {
-        let bvh = scene.environment.is_some().then(|| Bvh::build(&scene.objects));
         let sizes = atlas_sizes(&scene.objects, settings.irradiance_size);
         let mut steps = Vec::new();
         for (number, (object, size)) in (0..).zip(scene.objects.iter().zip(sizes)) {
             let prepared = Prepared::new(object, size, chosen_kernel(&object.material, settings)?);
-            let charts = prepared.atlas.charts.halved().halved();
-            let (samples, seed) = (settings.ambient_samples, settings.seed);
-            let ambient = match &bvh {
-                Some(bvh) => Ambient::new(object, &prepared.atlas, charts, bvh, samples, seed, progress),
-                None => Ambient::open(charts),
-            };
             if !progress.goes_on() {
                 return Err(RenderError::Stopped.into());
             }
-            let (maps, more) =
-                ObjectMaps::new(gpu, passes, &self.shared, number, object, prepared, &ambient)?;
+            let (maps, more) = ObjectMaps::new(gpu, passes, &self.shared, number, object, prepared)?;
             self.surface_steps.push(passes.deform.step(gpu, self.posing.deformable(number), &maps.geometry));
             self.objects.push(maps);
             steps.push(more);
@@ -150,6 +142,9 @@ impl GpuScene {
         for steps in objects {
             self.surface_steps.extend(steps.surface);
             after.extend(steps.light);
+        }
+        if let Some(surroundings) = &self.shared.surroundings {
+            self.surface_steps.extend(surroundings.steps(gpu, passes, &self.objects));
         }
         for (light, layer) in (0..).zip(&self.shared.layers) {
             let Some(layer) = *layer else { continue };
@@ -183,7 +178,7 @@ impl GpuScene {
     }
 
     /// Deforms all objects from rest into a pose, from the next frame on; `scene` is the one this was made from.
-    /// Stretch, the unrolled surface, the taps of the blurs and the lights' maps follow; openness does not.
+    /// Stretch, the unrolled surface, the taps of the blurs, openness and the lights' maps follow.
     ///
     /// # Errors
     /// If it names what no object has, or a number makes no sense; nothing moves then.

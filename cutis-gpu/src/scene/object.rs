@@ -1,23 +1,22 @@
 //! One object: its mesh and textures, and the steps that fill them.
 
-use super::charts::{ChartTexture, surface_texture};
+use super::charts::{ChartPyramid, surface_texture};
 use super::geometry::Geometry;
 use super::material::MaterialMaps;
 use super::shared::Shared;
 use crate::map::{Map, View};
 use crate::passes::atlas::AtlasMaps;
-use crate::passes::diffusion::shortened;
+use crate::passes::diffusion::{like_level, shortened};
 use crate::passes::irradiance::IrradianceInputs;
 use crate::passes::levels::{Level, Levels};
 use crate::passes::resolve::ResolveInputs;
 use crate::passes::shares::ShareGroup;
 use crate::passes::transmission::TransmissionInputs;
 use crate::passes::visibility::{Group, visibility_map};
-use crate::passes::{LIGHTS_TOGETHER, Passes};
+use crate::passes::{LIGHTS_TOGETHER, Passes, openness};
 use crate::step::Step;
 use crate::{Gpu, GpuError};
 use bytemuck::Zeroable;
-use cutis_render::passes::ambient::Ambient;
 use cutis_render::passes::atlas::Atlas;
 use cutis_render::passes::diffusion::{Action, median_texel_mm, plan};
 use cutis_render::passes::stretch::stretch_mm_per_texel;
@@ -28,9 +27,6 @@ use cutis_render::technique::texture_space::opaque_mm;
 use cutis_scene::Object;
 use glam::Vec4;
 use wgpu::TextureFormat as Format;
-
-/// Finest maps that occlusion is kept in: a quarter as wide as the irradiance.
-const AMBIENT_HALVINGS: usize = 2;
 
 /// What is computed once for an object, by cutis-render.
 #[derive(Debug)]
@@ -67,13 +63,16 @@ pub struct ObjectMaps {
     pub levels: Levels,
     /// Fraction of each light that is seen.
     pub visibility: Map,
-    /// Sum of all Gaussians.
+    /// Sum of all Gaussians, in the first layer. Before, light on its way passes through here: distances, and what is blurred
+    /// along u only.
     pub local: Map,
     /// Light that came through, at half the size.
     pub transmission: Map,
-    charts: Vec<ChartTexture>,
+    /// Bent normal and openness.
+    pub ambient: Map,
+    /// Its charts in all sizes.
+    pub charts: ChartPyramid,
     material: MaterialMaps,
-    ambient: Map,
     rho_dt: Map,
 }
 
@@ -98,13 +97,12 @@ impl ObjectMaps {
         number: u32,
         object: &Object,
         prepared: Prepared,
-        ambient: &Ambient,
     ) -> Result<(Self, ObjectSteps), GpuError> {
         let Prepared { atlas: unrolled, texel_mm, kernel, rho_dt } = prepared;
         let size = unrolled.size as u32;
         let plan = shortened(&plan(unrolled.size, texel_mm, &kernel.variances_mm2), texel_mm);
         tracing::debug!("plan of '{}' with texels of {texel_mm} mm: {plan:?}", object.name);
-        let charts = chart_textures(gpu, &unrolled, &plan);
+        let charts = ChartPyramid::new(gpu, &unrolled.charts, halvings(&plan));
         let geometry = Geometry::new(gpu, object)?;
         let material = MaterialMaps::new(gpu, &object.material)?;
         let atlas = AtlasMaps::new(gpu, size);
@@ -116,16 +114,17 @@ impl ObjectMaps {
             gpu,
             samplers,
             (&geometry, &material),
-            (&surface, &charts[0]),
+            (&surface, &charts.sizes[0]),
             &atlas,
         ));
+        let levels = Levels::new(gpu, &charts.sizes, light_layers(shared), &plan);
         let mut maps = Self {
             visibility: visibility_map(gpu, size, shared.light_count),
-            local: Map::square(gpu, "local", size, 1, Format::Rgba16Float),
+            local: like_level(gpu, "local", size, &levels.all[0].light),
             transmission: Map::square(gpu, "transmission", size / 2, 1, Format::Rgba16Float),
-            ambient: ambient_texture(gpu, ambient),
+            ambient: ambient_texture(gpu, size >> openness::HALVINGS, shared),
             rho_dt: rho_dt_texture(gpu, &rho_dt),
-            levels: Levels::new(gpu, &charts, light_layers(shared), &plan),
+            levels,
             geometry,
             kernel,
             atlas,
@@ -133,14 +132,15 @@ impl ObjectMaps {
             material,
         };
         let light = Lighting { gpu, passes, shared, number, maps: &maps };
-        let shares = light.steps((&plan, texel_mm), &mut steps);
-        steps.light.extend(passes.gather.steps(gpu, &maps.kernel, &maps.levels, maps.local.view()));
+        let shares = light.steps(&plan, &mut steps);
+        let gather = passes.gather.step(gpu, &maps.kernel, &maps.levels, &maps.charts, maps.local.view());
+        steps.light.push(gather);
         let inputs = TransmissionInputs {
             object: number,
             lights: &shared.lights,
             kernel: &maps.kernel,
             atlas: &maps.atlas,
-            half_charts: &maps.charts[1],
+            charts: &maps.charts,
             shadows: &shared.shadows,
             shares: shares.as_ref(),
             levels: &maps.levels,
@@ -162,7 +162,7 @@ impl ObjectMaps {
             environment: &shared.environment,
             geometry: &self.geometry,
             material: &self.material,
-            charts: [&self.charts[0], &self.charts[1], &self.charts[AMBIENT_HALVINGS]],
+            charts: [0, 1, openness::HALVINGS].map(|halvings| &self.charts.sizes[halvings]),
             local: &self.local,
             transmission: &self.transmission,
             visibility: &self.visibility,
@@ -173,7 +173,7 @@ impl ObjectMaps {
 
     /// The stretch in the form of a level.
     pub fn stretch_level(&self) -> Level {
-        Level { charts: self.charts[0].clone(), light: self.atlas.stretch.clone(), size: 0 }
+        Level { charts: self.charts.sizes[0].clone(), light: self.atlas.stretch.clone() }
     }
 }
 
@@ -187,16 +187,18 @@ struct Lighting<'a> {
 }
 
 impl Lighting<'_> {
-    /// Adds its steps by a plan for texels of a width in mm. Gives each light's share, where there are several.
-    fn steps(&self, (plan, texel_mm): (&[Action], f32), all: &mut ObjectSteps) -> Option<Map> {
+    /// Adds its steps by a plan. Gives each light's share, where there are several.
+    fn steps(&self, plan: &[Action], all: &mut ObjectSteps) -> Option<Map> {
         let steps = &mut all.light;
         let Self { gpu, passes, shared, maps, .. } = *self;
-        let size = maps.charts[0].size;
+        let size = maps.charts.sizes[0].size;
         let groups = shared.light_count.div_ceil(LIGHTS_TOGETHER) as u32;
         let many = shared.light_count > 1;
         let light = &maps.levels.all[0].light;
-        // With several lights all distances live in further layers of the light, and this stays empty.
-        let distances = Map::square(gpu, "distance", if many { 1 } else { size }, 1, Format::Rgba16Float);
+        // With several lights all distances live in further layers of the light, and this stays empty. One light's are read
+        // before anything is blurred.
+        let empty = || Map::square(gpu, "no distance", 1, 1, Format::Rgba16Float);
+        let distances = if many { empty() } else { maps.local.clone() };
         for group in 0..groups {
             let target = if many { &light.layers[1 + group as usize] } else { distances.view() };
             steps.push(self.visibility(group, target));
@@ -207,10 +209,10 @@ impl Lighting<'_> {
             material: &maps.material,
             environment: &shared.environment,
             atlas: &maps.atlas,
-            charts: &maps.charts[0],
+            charts: &maps.charts.sizes[0],
             visibility: &maps.visibility,
             distances_mm: &distances,
-            ambient: (&maps.ambient, &maps.charts[AMBIENT_HALVINGS]),
+            ambient: (&maps.ambient, &maps.charts.sizes[openness::HALVINGS]),
             rho_dt: &maps.rho_dt,
         };
         steps.push(passes.irradiance.step(gpu, &inputs, &light.layers[0]));
@@ -223,8 +225,8 @@ impl Lighting<'_> {
             }));
             shares
         });
-        let stretch = &maps.atlas.stretch;
-        let diffusion = passes.diffusion.steps(gpu, &maps.charts, &maps.levels, stretch, plan, texel_mm);
+        let (charts, maps_between) = (&maps.charts.sizes, (&maps.atlas.stretch, &maps.local));
+        let diffusion = passes.diffusion.steps(gpu, charts, &maps.levels, maps_between, plan);
         steps.extend(diffusion.blurs);
         all.surface.extend(diffusion.taps);
         shares
@@ -247,7 +249,7 @@ impl Lighting<'_> {
             (numbers, shared.any_extent),
             (&shared.lights, &shared.shadows),
             &maps.atlas,
-            &maps.charts[0],
+            &maps.charts.sizes[0],
             targets,
         )
     }
@@ -259,21 +261,19 @@ fn light_layers(shared: &Shared) -> u32 {
     if many { 1 + shared.light_count.div_ceil(LIGHTS_TOGETHER) as u32 } else { 1 }
 }
 
-/// Charts of every size that is needed: by the plan, and by the map of occlusion.
-fn chart_textures(gpu: &Gpu, atlas: &Atlas, plan: &[Action]) -> Vec<ChartTexture> {
-    let halvings = plan.iter().filter(|action| **action == Action::Halve).count().max(AMBIENT_HALVINGS);
-    let mut charts = atlas.charts.as_ref().clone();
-    let mut textures = vec![ChartTexture::new(gpu, &charts)];
-    for _ in 0..halvings {
-        charts = charts.halved();
-        textures.push(ChartTexture::new(gpu, &charts));
-    }
-    textures
+/// How often charts are halved: for the plan and once more for its stretch, and for the map of occlusion.
+fn halvings(plan: &[Action]) -> usize {
+    let of_light = plan.iter().filter(|action| **action == Action::Halve).count();
+    (of_light + 1).max(openness::HALVINGS)
 }
 
-fn ambient_texture(gpu: &Gpu, ambient: &Ambient) -> Map {
-    let size = ambient.charts().size as u32;
-    Map::of_values(gpu, "openness", [size, size], ambient.map().iter().copied())
+/// Where openness goes; open to all sides where nobody asks for it.
+fn ambient_texture(gpu: &Gpu, size: u32, shared: &Shared) -> Map {
+    if shared.surroundings.is_some() {
+        return Map::square(gpu, "openness", size, 1, Format::Rgba16Float);
+    }
+    let open = std::iter::repeat_n(Vec4::W, (size * size) as usize);
+    Map::of_values(gpu, "openness", [size, size], open)
 }
 
 /// The table of rho_dt: the means over the hemisphere are one more column.

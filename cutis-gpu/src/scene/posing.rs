@@ -81,6 +81,9 @@ impl Posing {
         self.pose.lock().unwrap_or_else(PoisonError::into_inner).clone_from(pose);
         let corners = self.corners_mm(scene, pose);
         self.lay_lights(gpu, shared, scene, &corners);
+        if let Some(surroundings) = &shared.surroundings {
+            surroundings.show(gpu, if corners.is_empty() { &self.first.bounds_mm } else { &corners });
+        }
         let around = bounds_mm(corners.iter().copied());
         let seen = {
             let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);

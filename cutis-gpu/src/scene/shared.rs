@@ -4,11 +4,13 @@ use super::camera::GpuCamera;
 use super::environment::EnvironmentMaps;
 use super::lights::{GpuLight, NO_MAP};
 use super::relight::{any_extent, layers};
+use super::surroundings::Surroundings;
 use crate::passes::shadow::ShadowMaps;
 use crate::{Gpu, GpuError};
 use cutis_render::Settings;
 use cutis_render::prepare::FilteredEnvironment;
 use cutis_scene::Scene;
+use glam::Vec3;
 
 /// Lights that get a shadow map; more would fill the memory of small adapters.
 pub const SHADOW_BUDGET: usize = 8;
@@ -32,6 +34,8 @@ pub struct Shared {
     pub shadows: ShadowMaps,
     /// The filtered environment.
     pub environment: EnvironmentMaps,
+    /// What hides it; none without an environment.
+    pub surroundings: Option<Surroundings>,
     /// [`GpuCamera`].
     pub camera: wgpu::Buffer,
     /// Places on a light's disc that are tried.
@@ -61,6 +65,7 @@ impl Shared {
             any_extent: any_extent(&lights),
             shadows: ShadowMaps::new(gpu, size, layers.iter().flatten().count() as u32),
             environment: EnvironmentMaps::new(gpu, filtered)?,
+            surroundings: filtered.map(|_| Surroundings::new(gpu, settings.ambient_samples, &points(scene))),
             camera: gpu.uniform("camera", &GpuCamera::of_scene(scene, aspect)),
             shadow_samples: settings.shadow_samples.max(MIN_SHADOW_SAMPLES),
             warnings: warnings(&layers),
@@ -80,6 +85,11 @@ pub fn gpu_lights(scene: &Scene) -> Vec<GpuLight> {
         light
     };
     scene.lights.iter().map(light).collect()
+}
+
+/// All vertices, mm.
+fn points(scene: &Scene) -> Vec<Vec3> {
+    scene.objects.iter().flat_map(|object| object.mesh.positions_mm.iter().copied()).collect()
 }
 
 fn warnings(layers: &[Option<u32>]) -> Vec<String> {

@@ -23,7 +23,7 @@ fn light() -> Frame {
         let tone = (14.0 * x - 10.0).exp2();
         let hue = Vec3::new((6.3 * y).sin(), (6.3 * y + 2.1).sin(), (6.3 * y + 4.2).sin());
         let coverage = (1.5 - 1.5 * y).clamp(0.0, 1.0);
-        let lamp = if i % 4999 == 0 { 5000.0 } else { 0.0 };
+        let lamp = if i.is_multiple_of(4999) { 5000.0 } else { 0.0 };
         ((tone * (1.0 + 0.9 * hue) + lamp) * coverage).extend(coverage)
     };
     let mut pixels: Vec<_> = (0..width * height).map(pixel).collect();

@@ -21,8 +21,8 @@ pub struct Cost {
 }
 
 /// Reads of textures by one invocation of every entry point but those of vertices, counted in its source: one light, as many
-/// Gaussians as skin has at a size, loops as long as for most texels.
-pub const TAPS: [(&str, u64); 21] = [
+/// Gaussians as skin has at a size, loops as long as for most texels, the default bloom of 1080 rows.
+pub const TAPS: [(&str, u64); 26] = [
     ("deform_vertices", 0),
     ("stretch_at_vertices", 0),
     ("unroll", 2),
@@ -44,6 +44,11 @@ pub const TAPS: [(&str, u64); 21] = [
     ("show", 44),
     ("see_sky", 1),
     ("downsample", 4),
+    ("reduce", 4),
+    ("blur_along_rows", 89),
+    ("blur_along_columns", 89),
+    ("develop", 1),
+    ("develop_with_glow", 2),
 ];
 
 /// Reads of textures by one invocation of an entry point.

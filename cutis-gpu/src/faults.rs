@@ -3,7 +3,8 @@
 use crate::GpuError;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The first thing that went wrong since somebody last asked; what follows it is mostly its consequence.
+/// The first thing that went wrong since somebody last asked; what follows it is mostly its consequence. A device that is
+/// lost stays lost.
 #[derive(Debug, Clone, Default)]
 pub struct Faults {
     first: Arc<Mutex<Option<GpuError>>>,
@@ -16,22 +17,28 @@ impl Faults {
         let told = faults.clone();
         device.on_uncaptured_error(Arc::new(move |error| told.note(refusal(error))));
         let told = faults.clone();
-        device.set_device_lost_callback(move |_, reason| told.note(GpuError::Lost { reason }));
+        device.set_device_lost_callback(move |why, words| told.note(loss(why, &words)));
         faults
     }
 
     fn note(&self, error: GpuError) {
         tracing::debug!("{error}");
-        self.first.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+        let mut first = self.first.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*first {
+            Some(GpuError::Lost { .. }) => {}
+            Some(_) if !matches!(error, GpuError::Lost { .. }) => {}
+            _ => *first = Some(error),
+        }
     }
 
-    /// The first error, once.
+    /// The first error: once, but for the loss of the device, which is told every time.
     ///
     /// # Errors
     /// If there was one.
     pub fn check(&self) -> Result<(), GpuError> {
-        let first = self.first.lock().unwrap_or_else(PoisonError::into_inner).take();
-        first.map_or(Ok(()), Err)
+        let mut first = self.first.lock().unwrap_or_else(PoisonError::into_inner);
+        let told = if matches!(&*first, Some(GpuError::Lost { .. })) { first.clone() } else { first.take() };
+        told.map_or(Ok(()), Err)
     }
 }
 
@@ -42,6 +49,16 @@ fn refusal(error: wgpu::Error) -> GpuError {
             GpuError::Refused { reason: one_line(&description) }
         }
     }
+}
+
+/// Drivers need not say anything.
+fn loss(why: wgpu::DeviceLostReason, words: &str) -> GpuError {
+    let reason = match (words, why) {
+        ("", wgpu::DeviceLostReason::Destroyed) => "its device was closed".to_owned(),
+        ("", _) => "its driver does not say why".to_owned(),
+        (words, _) => one_line(words),
+    };
+    GpuError::Lost { reason }
 }
 
 /// A description in lines, as one.

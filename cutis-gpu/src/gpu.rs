@@ -5,7 +5,6 @@ use crate::faults::Faults;
 use bytemuck::Pod;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 /// Which adapters will do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,6 +82,8 @@ impl Gpu {
     /// # Errors
     /// The first refusal, if there was one.
     pub fn check(&self) -> Result<(), GpuError> {
+        // The loss of a device is told to those who ask; the answer counts, not what asking gives.
+        let _ = self.device.poll(wgpu::PollType::Poll);
         self.faults.check().map_err(|error| match error {
             GpuError::OutOfMemory { .. } => GpuError::OutOfMemory { asked_bytes: self.asked_bytes() },
             other => other,
@@ -112,9 +113,15 @@ impl Gpu {
     }
 
     fn buffer(&self, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
-        self.count(contents.len() as u64);
+        let size = contents.len() as u64;
+        self.count(size);
         let usage = usage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
-        self.device.create_buffer_init(&BufferInitDescriptor { label: Some(label), contents, usage })
+        let descriptor =
+            wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
+        let buffer = self.device.create_buffer(&descriptor);
+        // Not by mapping it: what a device without room or a lost one gives cannot be mapped.
+        self.queue.write_buffer(&buffer, 0, contents);
+        buffer
     }
 
     /// Waits until all work is done.

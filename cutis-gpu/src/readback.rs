@@ -14,26 +14,57 @@ use wgpu::TextureFormat as Format;
 /// # Panics
 /// If the format is none of those that passes draw into.
 pub fn read_layer(gpu: &Gpu, map: &Map, layer: u32) -> Result<Vec<Vec4>, GpuError> {
+    let reader = Reader::new(gpu, map);
+    let bytes = reader.read(gpu, map, layer)?;
     let format = map.texture.format();
-    let texel_bytes = format.block_copy_size(None).expect("no format here is compressed") as usize;
-    let row_bytes = map.width() as usize * texel_bytes;
-    // Rows in a buffer begin at multiples of this.
-    let pitch = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("read back"),
-        size: (pitch * map.height() as usize) as u64,
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
-    copy(gpu, map, layer, &buffer, pitch);
-    let bytes = mapped(gpu, &buffer)?;
-    let rows = bytes.chunks_exact(pitch);
-    Ok(rows.flat_map(|row| row[..row_bytes].chunks_exact(texel_bytes).map(|t| texel(format, t))).collect())
+    Ok(bytes.chunks_exact(texel_bytes(map)).map(|bytes| texel(format, bytes)).collect())
 }
 
-fn copy(gpu: &Gpu, map: &Map, layer: u32, buffer: &wgpu::Buffer, pitch: usize) {
-    let layout =
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch as u32), rows_per_image: None };
+/// A buffer through which maps of one size and format are read.
+#[derive(Debug)]
+pub struct Reader {
+    buffer: wgpu::Buffer,
+}
+
+impl Reader {
+    /// For maps like this one.
+    pub fn new(gpu: &Gpu, map: &Map) -> Self {
+        let size = (pitch(map) * map.height() as usize) as u64;
+        gpu.count(size);
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("read back"),
+            size,
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        Self { buffer }
+    }
+
+    /// The bytes of all texels of one layer, row by row.
+    ///
+    /// # Errors
+    /// If the device is lost.
+    pub fn read(&self, gpu: &Gpu, map: &Map, layer: u32) -> Result<Vec<u8>, GpuError> {
+        copy(gpu, map, layer, &self.buffer);
+        let bytes = mapped(gpu, &self.buffer)?;
+        let row_bytes = map.width() as usize * texel_bytes(map);
+        Ok(bytes.chunks_exact(pitch(map)).flat_map(|row| &row[..row_bytes]).copied().collect())
+    }
+}
+
+fn texel_bytes(map: &Map) -> usize {
+    map.texture.format().block_copy_size(None).expect("no format here is compressed") as usize
+}
+
+/// Bytes from one row in a buffer to the next: they begin at multiples of what WebGPU asks for.
+fn pitch(map: &Map) -> usize {
+    let row_bytes = map.width() as usize * texel_bytes(map);
+    row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize)
+}
+
+fn copy(gpu: &Gpu, map: &Map, layer: u32, buffer: &wgpu::Buffer) {
+    let bytes_per_row = Some(pitch(map) as u32);
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     let to = wgpu::TexelCopyBufferInfo { buffer, layout };
     encoder.copy_texture_to_buffer(map.place(layer), to, map.extent());

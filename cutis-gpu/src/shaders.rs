@@ -102,10 +102,20 @@ pub const RESOLVE: &str = wgsl!(
 /// Pass `resolve`: what lies behind everything.
 pub const SKY: &str = wgsl!("lib/mesh.wgsl", "lib/camera.wgsl", "lib/environment.wgsl", "passes/sky.wgsl");
 /// Pass `downsample`.
-pub const DOWNSAMPLE: &str = wgsl!("passes/downsample.wgsl");
+pub const DOWNSAMPLE: &str = wgsl!("lib/cover.wgsl", "passes/downsample.wgsl");
+/// Pass `bloom`.
+pub const BLOOM: &str = wgsl!("lib/cover.wgsl", "lib/film.wgsl", "passes/bloom.wgsl");
+/// Pass `tone map`.
+pub const TONE_MAP: &str = wgsl!(
+    "lib/cover.wgsl",
+    "lib/film.wgsl",
+    "lib/dither.wgsl",
+    "lib/tone_mappers.wgsl",
+    "passes/tone_map.wgsl"
+);
 
 /// All of them by name.
-pub const ALL: [(&str, &str); 17] = [
+pub const ALL: [(&str, &str); 19] = [
     ("deform", DEFORM),
     ("stretch", STRETCH),
     ("atlas", ATLAS),
@@ -123,4 +133,6 @@ pub const ALL: [(&str, &str); 17] = [
     ("resolve", RESOLVE),
     ("sky", SKY),
     ("downsample", DOWNSAMPLE),
+    ("bloom", BLOOM),
+    ("tone map", TONE_MAP),
 ];

@@ -4,7 +4,10 @@ mod common;
 
 use common::{head_in_the_studio, renderer};
 use cutis_gpu::map::Map;
+use cutis_gpu::scene::SceneError;
+use cutis_gpu::scene::development::Developing;
 use cutis_gpu::{Adapters, Gpu, GpuError};
+use cutis_render::film::Film;
 use cutis_render::{Settings, Silent};
 use wgpu::TextureFormat as Format;
 
@@ -69,4 +72,35 @@ fn a_scene_counts_what_it_asks_for() {
     let _numbers = counting.storage("numbers", &[0u32; 5]);
     assert_eq!(counting.asked_bytes(), 16 * 16 * 3 * 8 + 5 * 4);
     assert_eq!(gpu.asked_bytes(), 0, "counts are apart");
+}
+
+#[test]
+fn a_lost_device_is_told_in_words_again_and_again() {
+    let Some(gpu) = own_gpu("a_lost_device_is_told_in_words_again_and_again") else { return };
+    let own = cutis_gpu::GpuRenderer::with_gpu(gpu);
+    let small = Settings { width: 16, height: 16, irradiance_size: 64, ..Settings::default() };
+    let mut ready = own.scene(&head_in_the_studio(), &small, &Silent).expect("is uploaded");
+    let how = Developing { film: Film::default(), behind: 0.0 };
+    ready.set_film(&own.gpu, &own.passes, how).expect("is laid");
+    ready.draw(&own.gpu).expect("is drawn");
+    // A device that is closed ends its work first.
+    own.gpu.wait().expect("is done");
+    own.gpu.device.destroy();
+    let is_lost = |result: Result<(), GpuError>, what: &str| {
+        let error = result.expect_err(what);
+        assert!(matches!(error, GpuError::Lost { .. }), "{what}: {error:?}");
+        let words = error.to_string();
+        assert!(words.starts_with("the graphics adapter gave up: ") && words.len() > 32, "{what}: {words}");
+    };
+    for _ in 0..2 {
+        is_lost(ready.draw(&own.gpu), "draw");
+        is_lost(ready.draw_timed(&own.gpu).map(drop), "draw timed");
+        is_lost(ready.look_timed(&own.gpu).map(drop), "look");
+        is_lost(ready.picture(&own.gpu).map(drop), "picture");
+        is_lost(ready.develop_timed(&own.gpu).map(drop), "develop");
+        is_lost(ready.developed(&own.gpu).map(drop), "codes");
+        is_lost(own.gpu.wait(), "wait");
+    }
+    let again = own.scene(&head_in_the_studio(), &small, &Silent).map(drop);
+    assert!(matches!(again, Err(SceneError::Gpu(GpuError::Lost { .. }))), "{again:?}");
 }

@@ -8,6 +8,7 @@ use cutis_gpu::passes::openness;
 use cutis_gpu::passes::resolve::{LayerKind, Wanted};
 use cutis_gpu::passes::shadow::Drawn;
 use cutis_gpu::passes::shares::ShareGroup;
+use cutis_gpu::passes::tone_map::{self, GpuFilm};
 use cutis_gpu::passes::transmission::{Slab, Slabs, Smoothing, TEXELS_OF_MARK};
 use cutis_gpu::passes::visibility::Group;
 use cutis_gpu::scene::camera::GpuCamera;
@@ -17,6 +18,7 @@ use cutis_gpu::scene::geometry::Vertex;
 use cutis_gpu::scene::lights::{GpuLight, NO_MAP};
 use cutis_gpu::scene::material::GpuMaterial;
 use cutis_gpu::{passes, shaders};
+use cutis_render::film::{self, ToneMapper, dither};
 use cutis_render::passes::tap::NARROW_TEXEL2;
 use cutis_render::passes::transmission::{FADE_DEVIATIONS, VISIBLE};
 use cutis_render::prepare::rho_dt::{COSINES, ROUGHNESSES};
@@ -149,6 +151,12 @@ fn structs_of_the_passes_match_wgsl() {
     same_layout!(Smoothing, shaders::SMOOTH, "Smoothing", [step, reach, pad0, pad1]);
     same_layout!(Wanted, shaders::RESOLVE, "Wanted", [layer, pad0, pad1, pad2]);
     same_layout!(Pixels, shaders::DOWNSAMPLE, "Pixels", [grid, pad0, pad1, pad2]);
+    same_layout!(
+        GpuFilm,
+        shaders::TONE_MAP,
+        "Film",
+        [gain, behind, strength, tone_mapper, cell, reach, pad0, pad1, weights]
+    );
 }
 
 /// A constant of a shader.
@@ -195,6 +203,27 @@ fn constants_match_wgsl() {
     for (source, name, value) in expected {
         assert_eq!(constant(source, name), value, "{name}");
     }
+}
+
+#[test]
+fn constants_of_the_film_match_wgsl() {
+    let mapper = |tone_mapper| f64::from(tone_map::number(tone_mapper));
+    let expected = [
+        ("MAX_RADIANCE", f64::from(film::MAX_RADIANCE)),
+        ("TURN_OF_COLUMN", f64::from(dither::TURN_OF_COLUMN)),
+        ("TURN_OF_ROW", f64::from(dither::TURN_OF_ROW)),
+        ("TURN_OF_CHANNEL", f64::from(dither::TURN_OF_CHANNEL)),
+        ("STEEPNESS", f64::from(dither::STEEPNESS)),
+        ("NONE", mapper(ToneMapper::None)),
+        ("REINHARD", mapper(ToneMapper::Reinhard)),
+        ("ACES", mapper(ToneMapper::Aces)),
+        ("AGX", mapper(ToneMapper::AgX)),
+        ("NEUTRAL", mapper(ToneMapper::Neutral)),
+    ];
+    for (name, value) in expected {
+        assert_eq!(constant(shaders::TONE_MAP, name), value, "{name}");
+    }
+    assert_eq!(constant(shaders::TONE_MAP, "WIDTH") as f32, dither::WIDTH);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use crate::Gpu;
 use crate::map::Map;
 use crate::pipeline::{Blueprint, Bound, Pipeline};
 use crate::shaders;
-use crate::step::{Draw, Step};
+use crate::step::Step;
 use bytemuck::{Pod, Zeroable};
 use wgpu::TextureFormat as Format;
 
@@ -45,14 +45,6 @@ impl DownsamplePass {
         let pipeline = if pixels.texture.format() == Format::Rgba16Float { &self.half } else { &self.single };
         let numbers = gpu.uniform("pixels", &Pixels { grid: grid as i32, ..Pixels::zeroed() });
         let bound = [(0, Bound::Texture(samples.view())), (1, Bound::Buffer(&numbers))];
-        Step::Draw(Draw {
-            pipeline: pipeline.clone(),
-            bind_groups: vec![pipeline.bind(gpu, 0, &bound)],
-            targets: vec![pixels.view().clone()],
-            depth: None,
-            clear: None,
-            vertices: 3,
-            instances: 1,
-        })
+        super::over_picture(gpu, pipeline, &bound, pixels)
     }
 }

@@ -11,11 +11,6 @@ struct Pixels {
     pad2: u32,
 }
 
-@vertex
-fn cover_picture(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return vec4f(vec2f(f32((index << 1u) & 2u), f32(index & 2u)) * 2.0 - 1.0, 0.0, 1.0);
-}
-
 @fragment
 fn downsample(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let corner = vec2i(position.xy) * pixels.grid;

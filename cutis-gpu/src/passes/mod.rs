@@ -2,6 +2,7 @@
 //! once and run in every frame.
 
 pub mod atlas;
+pub mod bloom;
 pub mod deform;
 pub mod diffusion;
 pub mod downsample;
@@ -13,11 +14,12 @@ pub mod resolve;
 pub mod shadow;
 pub mod shares;
 pub mod stretch;
+pub mod tone_map;
 pub mod transmission;
 pub mod visibility;
 
 use crate::Gpu;
-use crate::map::View;
+use crate::map::{Map, View};
 use crate::pipeline::{Bound, Pipeline};
 use crate::scene::charts::ChartTexture;
 use crate::step::{Draw, Step};
@@ -58,6 +60,10 @@ pub struct Passes {
     pub resolve: resolve::ResolvePass,
     /// Pass `downsample`.
     pub downsample: downsample::DownsamplePass,
+    /// Pass `bloom`.
+    pub bloom: bloom::BloomPass,
+    /// Pass `tone map`.
+    pub tone_map: tone_map::ToneMapPass,
 }
 
 impl Passes {
@@ -78,6 +84,8 @@ impl Passes {
             transmission: transmission::TransmissionPass::new(gpu),
             resolve: resolve::ResolvePass::new(gpu),
             downsample: downsample::DownsamplePass::new(gpu),
+            bloom: bloom::BloomPass::new(gpu),
+            tone_map: tone_map::ToneMapPass::new(gpu),
             samplers,
         }
     }
@@ -118,6 +126,19 @@ impl Samplers {
             around_sky: sampler("around the sky", linear, repeat, clamp),
         }
     }
+}
+
+/// A draw over a whole picture, whose shader has the vertices of `lib/cover.wgsl`.
+fn over_picture(gpu: &Gpu, pipeline: &Pipeline, bound: &[(u32, Bound)], picture: &Map) -> Step {
+    Step::Draw(Draw {
+        pipeline: pipeline.clone(),
+        bind_groups: vec![pipeline.bind(gpu, 0, bound)],
+        targets: vec![picture.view().clone()],
+        depth: None,
+        clear: None,
+        vertices: 3,
+        instances: 1,
+    })
 }
 
 /// A draw over all tiles of a map that hold a chart. Binding 0 is the list of these; `clear` empties the targets before.

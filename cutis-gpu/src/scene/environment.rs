@@ -39,6 +39,8 @@ pub struct EnvironmentMaps {
     pub reflections: Map,
     /// The environment itself, if the camera sees it.
     pub sky: Option<Map>,
+    /// What was uploaded; none without an environment.
+    uploaded: Option<GpuEnvironment>,
 }
 
 impl EnvironmentMaps {
@@ -48,20 +50,44 @@ impl EnvironmentMaps {
     /// If its map is larger than the device takes.
     pub fn new(gpu: &Gpu, filtered: Option<&FilteredEnvironment>) -> Result<Self, GpuError> {
         let Some(filtered) = filtered else { return Ok(Self::black(gpu)) };
-        let reflections = filtered.reflection_maps();
-        let size = [reflections[0].width(), reflections[0].height()];
+        let format = wgpu::TextureFormat::Rgba16Float;
+        let (irradiance, reflections) = (filtered.irradiance_map(), filtered.reflection_maps());
         let layers = reflections.len() as u32;
-        let stack = Map::new(gpu, "reflections", size, layers, wgpu::TextureFormat::Rgba16Float);
-        for (layer, reflection) in (0..).zip(reflections) {
-            stack.write(gpu, layer, &half_bytes(texels(reflection)));
-        }
         let frame = filtered.frame();
-        Ok(Self {
+        let this = Self {
             numbers: gpu.uniform("environment", &numbers(frame)),
-            irradiance: halves(gpu, "irradiance of the environment", filtered.irradiance_map()),
-            reflections: stack,
+            irradiance: Map::new(gpu, "irradiance of the environment", size(irradiance), 1, format),
+            reflections: Map::new(gpu, "reflections", size(&reflections[0]), layers, format),
             sky: if frame.visible { Some(sky(gpu, frame)?) } else { None },
-        })
+            uploaded: Some(numbers(frame)),
+        };
+        this.write(gpu, filtered);
+        Ok(this)
+    }
+
+    /// Whether an environment of the same map can be taken in.
+    pub fn serves(&self, environment: Option<&Environment>) -> bool {
+        environment.is_some() == self.uploaded.is_some()
+            && environment.is_some_and(|e| e.visible) == self.sky.is_some()
+    }
+
+    /// Takes in an environment that is turned, or of another strength.
+    pub fn set(&mut self, gpu: &Gpu, environment: &Environment) {
+        let now = numbers(environment);
+        if self.uploaded.is_none_or(|uploaded| bytemuck::bytes_of(&uploaded) == bytemuck::bytes_of(&now)) {
+            return;
+        }
+        gpu.queue.write_buffer(&self.numbers, 0, bytemuck::bytes_of(&now));
+        self.write(gpu, &FilteredEnvironment::new(environment));
+        self.uploaded = Some(now);
+    }
+
+    /// Fills the filtered maps.
+    fn write(&self, gpu: &Gpu, filtered: &FilteredEnvironment) {
+        self.irradiance.write(gpu, 0, &half_bytes(texels(filtered.irradiance_map())));
+        for (layer, reflection) in (0..).zip(filtered.reflection_maps()) {
+            self.reflections.write(gpu, layer, &half_bytes(texels(reflection)));
+        }
     }
 
     fn black(gpu: &Gpu) -> Self {
@@ -73,6 +99,7 @@ impl EnvironmentMaps {
             irradiance: Map::square(gpu, "no irradiance", 1, 1, format),
             reflections: Map::square(gpu, "no reflections", 1, ROUGHNESSES.len() as u32, format),
             sky: None,
+            uploaded: None,
         }
     }
 }
@@ -102,8 +129,12 @@ fn sky(gpu: &Gpu, environment: &Environment) -> Result<Map, GpuError> {
     Ok(halves(gpu, "sky", map))
 }
 
+fn size(texture: &Texture) -> [u32; 2] {
+    [texture.width(), texture.height()]
+}
+
 fn halves(gpu: &Gpu, label: &str, texture: &Texture) -> Map {
-    Map::of_values(gpu, label, [texture.width(), texture.height()], texels(texture))
+    Map::of_values(gpu, label, size(texture), texels(texture))
 }
 
 fn texels(texture: &Texture) -> impl Iterator<Item = Vec4> + '_ {

@@ -3,6 +3,7 @@
 pub mod camera;
 pub mod charts;
 pub mod deformable;
+pub mod development;
 pub mod environment;
 pub mod geometry;
 pub mod layers;
@@ -12,6 +13,7 @@ pub mod object;
 mod picture;
 pub mod posing;
 pub mod reach;
+pub mod relight;
 pub mod shared;
 pub mod surroundings;
 
@@ -27,6 +29,7 @@ use cutis_render::prepare::FilteredEnvironment;
 use cutis_render::technique::texture_space::{atlas_sizes, chosen_kernel};
 use cutis_render::{PassTime, Progress, RenderError, Settings};
 use cutis_scene::{Camera, Pose, PoseError, Scene};
+use development::Development;
 use glam::Vec4;
 use object::{ObjectMaps, ObjectSteps, Prepared};
 use picture::Picture;
@@ -45,6 +48,8 @@ pub struct GpuScene {
     picture: Picture,
     /// What deforms the objects, and where the camera stands.
     posing: Posing,
+    /// What develops it, if somebody wants that.
+    development: Option<Development>,
     background: wgpu::Color,
     /// What has to be done when the geometry has changed.
     surface_steps: Vec<Step>,
@@ -82,6 +87,7 @@ impl GpuScene {
         progress: &dyn Progress,
     ) -> Result<Self, SceneError> {
         let gpu = &gpu.counting();
+        gpu.check()?;
         check_texture(gpu, settings)?;
         let filtered = scene.environment.as_ref().map(FilteredEnvironment::new);
         let shared = Shared::new(gpu, scene, settings, filtered.as_ref())?;
@@ -90,6 +96,7 @@ impl GpuScene {
             shared,
             objects: Vec::new(),
             posing: Posing::new(gpu, scene)?,
+            development: None,
             background: background(scene),
             surface_steps: Vec::new(),
             light_steps: Vec::new(),
@@ -100,7 +107,8 @@ impl GpuScene {
         };
         let steps = this.add_objects(gpu, passes, scene, settings, progress)?;
         this.add_steps(gpu, passes, steps);
-        this.timing = Timing::new(gpu, this.surface_steps.len() + this.steps().count());
+        this.timing =
+            Timing::new(gpu, this.surface_steps.len() + this.steps().count() + development::MAX_STEPS);
         this.memory_bytes = gpu.asked_bytes();
         gpu.check()?;
         Ok(this)
@@ -158,6 +166,7 @@ impl GpuScene {
         if !self.picture.serves(settings) {
             self.picture = Picture::new(gpu, settings)?;
             self.picture.lay_steps(gpu, passes, &self.shared, &self.objects, self.background);
+            self.lay_film(gpu, passes);
         }
         gpu.check()
     }
@@ -183,7 +192,12 @@ impl GpuScene {
 
     /// The steps of a frame while the geometry stays.
     fn steps(&self) -> impl Iterator<Item = &Step> {
-        self.light_steps.iter().chain(&self.picture.steps)
+        self.light_steps.iter().chain(self.look_steps())
+    }
+
+    /// Those that need no new light.
+    fn look_steps(&self) -> impl Iterator<Item = &Step> {
+        self.picture.steps.iter().chain(self.film_steps())
     }
 
     /// The steps of the next frame.
@@ -229,7 +243,7 @@ impl GpuScene {
     /// If the device is lost.
     pub fn look_timed(&self, gpu: &Gpu) -> Result<Vec<PassTime>, GpuError> {
         if self.lit.load(Ordering::Relaxed) && !self.changed.load(Ordering::Relaxed) {
-            self.timing.run(gpu, self.picture.steps.iter())
+            self.timing.run(gpu, self.look_steps())
         } else {
             self.draw_timed(gpu)
         }

@@ -4,6 +4,7 @@ use super::camera::GpuCamera;
 use super::deformable::Deformable;
 use super::lights::{GpuLight, bounds_mm};
 use super::reach::Reach;
+use super::relight::are_alike;
 use super::shared::{Shared, gpu_lights};
 use crate::{Gpu, GpuError};
 use cutis_scene::{Camera, Pose, Scene};
@@ -17,6 +18,8 @@ pub struct Posing {
     /// How the scene was uploaded.
     first: First,
     seen: Mutex<Seen>,
+    /// The pose that was set last.
+    pose: Mutex<Pose>,
 }
 
 #[derive(Debug)]
@@ -57,6 +60,7 @@ impl Posing {
             objects,
             first: First { pose: scene.pose(), lights: gpu_lights(scene), bounds_mm },
             seen: Mutex::new(Seen { camera: scene.camera, bounds_mm }),
+            pose: Mutex::new(scene.pose()),
         })
     }
 
@@ -71,32 +75,54 @@ impl Posing {
     /// If the scene is another one.
     pub fn set_pose(&self, gpu: &Gpu, shared: &Shared, scene: &Scene, pose: &Pose, aspect: f32) {
         assert_eq!(scene.objects.len(), self.objects.len(), "the scene is the one that was uploaded");
-        let mut corners = Vec::new();
         for (deforming, object) in self.objects.iter().zip(&scene.objects) {
-            let on_mesh = pose.on_mesh(object.rest());
-            deforming.deformable.write(gpu, &on_mesh);
-            corners.extend(deforming.reach.corners_mm(&on_mesh));
+            deforming.deformable.write(gpu, &pose.on_mesh(object.rest()));
         }
-        let as_uploaded = *pose == self.first.pose;
-        if as_uploaded {
-            write_lights(gpu, shared, &self.first.lights);
-        } else {
-            let pairs = scene.lights.iter().zip(&shared.layers);
-            let lights: Vec<_> = pairs
-                .map(|(light, &layer)| GpuLight::over_points(light, corners.iter().copied(), layer))
-                .collect();
-            write_lights(gpu, shared, &lights);
-        }
+        self.pose.lock().unwrap_or_else(PoisonError::into_inner).clone_from(pose);
+        let corners = self.corners_mm(scene, pose);
+        self.lay_lights(gpu, shared, scene, &corners);
         if let Some(surroundings) = &shared.surroundings {
-            surroundings.show(gpu, if as_uploaded { &self.first.bounds_mm } else { &corners });
+            surroundings.show(gpu, if corners.is_empty() { &self.first.bounds_mm } else { &corners });
         }
-        let around = if as_uploaded { None } else { bounds_mm(corners.iter().copied()) };
+        let around = bounds_mm(corners.iter().copied());
         let seen = {
             let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
             seen.bounds_mm = around.unwrap_or(self.first.bounds_mm);
             *seen
         };
         write_camera(gpu, shared, seen, aspect);
+    }
+
+    /// Corners of what the objects may fill in a pose, mm; none in that of the upload, where their vertices are known.
+    fn corners_mm(&self, scene: &Scene, pose: &Pose) -> Vec<Vec3> {
+        if *pose == self.first.pose {
+            return Vec::new();
+        }
+        let pairs = self.objects.iter().zip(&scene.objects);
+        pairs.flat_map(|(own, object)| own.reach.corners_mm(&pose.on_mesh(object.rest()))).collect()
+    }
+
+    /// Lays the lights' maps over some corners, or as the scene was uploaded.
+    fn lay_lights(&self, gpu: &Gpu, shared: &Shared, scene: &Scene, corners_mm: &[Vec3]) {
+        if corners_mm.is_empty() {
+            return write_lights(gpu, shared, &self.first.lights);
+        }
+        let over = |(light, &layer)| GpuLight::over_points(light, corners_mm.iter().copied(), layer);
+        let lights: Vec<_> = scene.lights.iter().zip(&shared.layers).map(over).collect();
+        write_lights(gpu, shared, &lights);
+    }
+
+    /// Whether other lights are drawn by the steps of those that were uploaded.
+    pub fn is_lit_like(&self, lights: &[GpuLight]) -> bool {
+        are_alike(&self.first.lights, lights)
+    }
+
+    /// Writes other lights, which are laid over the scene as it was uploaded; over the pose that was set last where that
+    /// is another.
+    pub fn set_lights(&mut self, gpu: &Gpu, shared: &Shared, scene: &Scene, lights: Vec<GpuLight>) {
+        self.first.lights = lights;
+        let pose = self.pose.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        self.lay_lights(gpu, shared, scene, &self.corners_mm(scene, &pose));
     }
 
     /// Moves the camera.

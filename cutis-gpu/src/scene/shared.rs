@@ -3,6 +3,7 @@
 use super::camera::GpuCamera;
 use super::environment::EnvironmentMaps;
 use super::lights::{GpuLight, NO_MAP};
+use super::relight::{any_extent, layers};
 use super::surroundings::Surroundings;
 use crate::passes::shadow::ShadowMaps;
 use crate::{Gpu, GpuError};
@@ -55,13 +56,13 @@ impl Shared {
         filtered: Option<&FilteredEnvironment>,
     ) -> Result<Self, GpuError> {
         let lights = gpu_lights(scene);
-        let layers: Vec<_> = lights.iter().map(|l| (l.map_layer != NO_MAP).then_some(l.map_layer)).collect();
+        let layers = layers(&lights);
         let [smallest, largest] = SHADOW_SIZES;
         let size = settings.irradiance_size.clamp(smallest, largest);
         let aspect = settings.width as f32 / settings.height as f32;
         Ok(Self {
             light_count: lights.len().max(1),
-            any_extent: lights.iter().any(|light| light.extent > 0.0),
+            any_extent: any_extent(&lights),
             shadows: ShadowMaps::new(gpu, size, layers.iter().flatten().count() as u32),
             environment: EnvironmentMaps::new(gpu, filtered)?,
             surroundings: filtered.map(|_| Surroundings::new(gpu, settings.ambient_samples, &points(scene))),

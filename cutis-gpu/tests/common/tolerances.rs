@@ -83,3 +83,10 @@ pub const FURNACE: f32 = 6e-3;
 pub const EAR: [f32; 2] = [0.0022, 0.00025];
 /// The same of its nostrils.
 pub const NOSTRILS: [f32; 2] = [0.0004, 0.0001];
+/// Codes of 8 bits by which the films may be apart: the dither is the same, a value at a threshold may round to either side.
+pub const CODES_APART: u8 = 1;
+/// Share of the codes that differ at all, where a share of the light was spread: llvmpipe cuts the 16-bit floats of the glow
+/// off, by up to 1/2048 in each of three passes, of which it is half on the mean.
+pub const fn codes_that_differ(spread: f32) -> f32 {
+    1e-3 + 0.15 * spread
+}

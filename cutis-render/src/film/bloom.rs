@@ -20,6 +20,9 @@ const CELLS_PER_SIGMA: f32 = 8.0;
 /// Reach of the blur in standard deviations; 6e-5 of a Gaussian lies beyond.
 const REACH_IN_SIGMAS: f32 = 4.0;
 
+/// Cells to either side that the blur may reach: the reduction leaves standard deviations below twice those it aims at.
+pub const MAX_REACH: usize = 64;
+
 /// Glow around bright things.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bloom {
@@ -41,15 +44,21 @@ impl Bloom {
         in_range("bloom radius", self.sigma_over_height, 0.0..=0.25, "0 to 0.25 of the picture's height")
     }
 
-    /// Spreads the light of a picture in place.
-    pub(super) fn apply(&self, width: u32, height: u32, pixels: &mut [Vec4]) {
+    /// How the light of a picture of this height is spread; none if it stays where it is.
+    pub fn spread(&self, height: u32) -> Option<Spread> {
         let sigma = self.sigma_over_height * height as f32;
         if self.strength <= 0.0 || sigma <= 0.0 {
-            return;
+            return None;
         }
-        let (width, cell) = (width as usize, ((sigma / CELLS_PER_SIGMA) as usize).max(1));
+        let cell = ((sigma / CELLS_PER_SIGMA) as usize).max(1);
+        Some(Spread { cell, weights: gaussian(sigma / cell as f32) })
+    }
+
+    /// Spreads the light of a picture in place.
+    pub(super) fn apply(&self, width: u32, height: u32, pixels: &mut [Vec4]) {
+        let Some(Spread { cell, weights }) = self.spread(height) else { return };
+        let width = width as usize;
         let reduced = reduce(&Grid { width, cells: pixels }, cell);
-        let weights = gaussian(sigma / cell as f32);
         let columns = width.div_ceil(cell);
         let blurred = blur_vertical(columns, &blur_horizontal(columns, &reduced, &weights), &weights);
         let glow = Grid { width: columns, cells: &blurred };
@@ -59,6 +68,15 @@ impl Bloom {
             }
         });
     }
+}
+
+/// How light is spread: the same wherever it is computed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spread {
+    /// Side of a cell of the reduced copy, pixels.
+    pub cell: usize,
+    /// Weights of one half of the blur, from the middle outwards; the other half is the same. Not yet normalised.
+    pub weights: Vec<f32>,
 }
 
 /// Rows of cells.
@@ -176,6 +194,15 @@ mod tests {
         let mut pixels = vec![plain; 300 * 200];
         Bloom { strength: 0.7, sigma_over_height: 0.2 }.apply(300, 200, &mut pixels);
         assert!(pixels.iter().all(|p| (*p - plain).abs().max_element() < 1e-5));
+    }
+
+    #[test]
+    fn the_blur_never_reaches_further_than_it_may() {
+        for height in 1..5000 {
+            let bloom = Bloom { strength: 1.0, sigma_over_height: 0.01 };
+            let spread = bloom.spread(height).expect("light is spread");
+            assert!(spread.weights.len() <= MAX_REACH + 1, "{height}: {}", spread.weights.len());
+        }
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! The film: from a [`Frame`] of linear, scene-referred light to a picture that a screen can show, and to files.
 //!
 //! In order: exposure (a factor 2^EV), [`Bloom`], [`ToneMapper`]. The picture that comes out is *display-linear*:
-//! linear Rec. 709 in 0..=1 with 1 the screen's white; the sRGB curve is applied when a PNG is written.
+//! linear Rec. 709 in 0..=1 with 1 the screen's white; the sRGB curve is applied when [`codes()`] for a screen are made or
+//! a PNG is written, and what has 8 bits is [dithered](dither).
 //! EXR files hold the frame itself, before the film: see [`write()`].
 //!
 //! Coverage: colours are premultiplied from end to end. Exposure and bloom are linear and act on colour and coverage
@@ -10,6 +11,8 @@
 
 mod bloom;
 mod checkpoint;
+mod codes;
+pub mod dither;
 mod error;
 mod exr;
 mod format;
@@ -20,8 +23,9 @@ mod srgb;
 mod tone_map;
 mod write;
 
-pub use bloom::Bloom;
+pub use bloom::{Bloom, MAX_REACH, Spread};
 pub use checkpoint::{Checkpoint, CheckpointError};
+pub use codes::{codes, encoded};
 pub use error::FilmError;
 pub use format::{Format, known_extensions};
 pub use srgb::linear_to_srgb;
@@ -37,7 +41,7 @@ use std::time::Instant;
 const MAX_EXPOSURE_EV: f32 = 32.0;
 
 /// Radiance beyond this is taken as this: the largest half float, so that PNG and EXR see the same brightest light.
-const MAX_RADIANCE: f32 = 65_504.0;
+pub const MAX_RADIANCE: f32 = 65_504.0;
 
 /// How a frame becomes a picture.
 #[derive(Debug, Clone, Copy, PartialEq)]

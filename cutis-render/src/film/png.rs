@@ -2,9 +2,9 @@
 //!
 //! A picture in which every pixel is covered is written as RGB. If any is not, as RGBA with *straight* alpha, as the
 //! PNG specification asks (PNG 3rd edition, section 6.2), so the premultiplied colour is divided by its coverage.
-//! 8-bit colours are dithered by less than one code, so that soft shading does not fall into bands; values that lie
-//! exactly on a code, black and white among them, stay on it. The pattern depends on the place in the picture alone.
+//! 8-bit colours are [dithered](super::dither), and so is their coverage; data are not.
 
+use super::dither::dither;
 use super::{Picture, linear_to_srgb};
 use ::png::{BitDepth, ColorType, Compression, Encoder, EncodingError, SrgbRenderingIntent};
 use glam::{Vec3, Vec4};
@@ -78,10 +78,10 @@ fn bytes(raster: &Raster, depth: Depth) -> Vec<u8> {
     let (max, channels) = (depth.max_code(), raster.channels);
     let dithered = raster.srgb && depth == Depth::Eight;
     let codes = move |(index, pixel): (usize, &Vec4)| {
-        let (x, y) = (index % raster.width as usize, index / raster.width as usize);
+        let at = [index as u32 % raster.width, index as u32 / raster.width];
         let pixel = *pixel;
         (0..channels).map(move |channel| {
-            let shift = if dithered && channel < 3 { dither(x, y, channel) } else { 0.0 };
+            let shift = if dithered { dither(at, channel as u32) } else { 0.0 };
             code(pixel[channel], max, shift)
         })
     };
@@ -96,15 +96,6 @@ fn bytes(raster: &Raster, depth: Depth) -> Vec<u8> {
 fn code(value: f32, max: f32, shift: f32) -> u32 {
     // `as` takes NaN to 0.
     (value * max + 0.5 + shift).clamp(0.0, max) as u32
-}
-
-/// Even noise in -0.5..0.5 with little of low frequencies: interleaved gradient noise (Jimenez 2014, "Next Generation
-/// Post Processing in Call of Duty: Advanced Warfare", slide 123 (number not checked)); 5.588238 is the shift its
-/// author uses between independent patterns, here between channels.
-fn dither(x: usize, y: usize, channel: usize) -> f32 {
-    let shift = 5.588_238 * channel as f32;
-    let (x, y) = (x as f32 + shift, y as f32 + shift);
-    (52.982_918 * (0.067_110_56 * x + 0.005_837_15 * y).fract()).fract() - 0.5
 }
 
 #[cfg(test)]
@@ -162,26 +153,21 @@ mod tests {
     }
 
     #[test]
-    fn dither_keeps_the_mean_and_leaves_exact_codes_alone() {
-        let flat = |encoded: f32| {
-            let raster = Raster {
-                width: 128,
-                height: 128,
-                channels: 3,
-                srgb: true,
-                pixels: vec![Vec4::splat(encoded); 128 * 128],
-            };
-            bytes(&raster, Depth::Eight)
+    fn colours_and_coverage_are_dithered_and_data_are_not() {
+        let flat = |value: f32, srgb: bool| {
+            let pixels = vec![Vec4::splat(value); 128 * 128];
+            bytes(&Raster { width: 128, height: 128, channels: 4, srgb, pixels }, Depth::Eight)
         };
         for exact in [0u8, 1, 77, 255] {
-            assert!(flat(f32::from(exact) / 255.0).iter().all(|&b| b == exact), "{exact}");
+            assert!(flat(f32::from(exact) / 255.0, true).iter().all(|&b| b == exact), "{exact}");
         }
-        for part in [0.1f32, 0.3, 0.5, 0.9] {
-            let codes = flat((100.0 + part) / 255.0);
+        for channel in 0..4 {
+            let codes: Vec<_> = flat(100.3 / 255.0, true).into_iter().skip(channel).step_by(4).collect();
             let mean = codes.iter().map(|&b| f64::from(b)).sum::<f64>() / codes.len() as f64;
-            // White noise of 49152 samples would give a standard error of 0.002; five of them.
-            assert!((mean - f64::from(100.0 + part)).abs() < 0.01, "{part}: {mean}");
+            // As for the dither itself.
+            assert!((mean - 100.3).abs() < 0.01, "{channel}: {mean}");
         }
+        assert!(flat(100.3 / 255.0, false).iter().all(|&b| b == 100));
     }
 
     #[test]

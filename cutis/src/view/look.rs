@@ -6,7 +6,7 @@ use crate::backend::Backend;
 use cutis_render::film::Film;
 use cutis_render::prepare::kernel::stretched;
 use cutis_render::{Diffusion, RenderError, TechniqueName};
-use cutis_scene::{Camera, Light, Material, Pose, PoseError, ScalarMap, Scattering, Scene};
+use cutis_scene::{Camera, Environment, Light, Material, Pose, PoseError, ScalarMap, Scattering, Scene};
 use glam::{Quat, Vec3};
 
 /// How a scene is looked at.
@@ -120,28 +120,33 @@ impl Look {
     /// If it cannot take the pose.
     pub fn applied_to(&self, scene: &Scene) -> Result<Scene, RenderError> {
         let mut scene = scene.clone();
-        // Lights turn about the middle of the scene as it was read: they do not follow a pose.
-        let middle_mm = scene.bounds_mm().map_or(Vec3::ZERO, |[lo, hi]| 0.5 * (lo + hi));
+        let (lights, environment) = (self.lights_of(&scene), self.environment_of(&scene));
         if scene.pose() != self.pose {
             scene.set_pose(&self.pose).map_err(|error| bad_pose(&error))?;
         }
         scene.camera = self.camera;
-        scene.lights = scene
-            .lights
-            .iter()
-            .zip(&self.lights)
-            .filter(|(_, look)| look.on && look.strength > 0.0)
-            .map(|(light, look)| look.applied_to(light, middle_mm))
-            .collect();
-        if let Some(environment) = &mut scene.environment {
-            environment.radiance_scale *= self.surroundings.strength;
-            environment.rotation_rad += self.surroundings.turn_degrees.to_radians();
-            environment.visible = self.surroundings.visible;
-        }
-        // Nothing shines: no need to ask what is open to it.
-        scene.environment = scene.environment.filter(|_| self.surroundings.strength > 0.0);
+        (scene.lights, scene.environment) = (lights, environment);
         scene.objects.iter_mut().for_each(|object| self.skin.apply_to(&mut object.material));
         Ok(scene)
+    }
+
+    /// The lights of a scene, as it was read, as they are looked at. They turn about its middle and do not follow a pose.
+    pub fn lights_of(&self, scene: &Scene) -> Vec<Light> {
+        let middle_mm = scene.bounds_mm().map_or(Vec3::ZERO, |[lo, hi]| 0.5 * (lo + hi));
+        let pairs = scene.lights.iter().zip(&self.lights);
+        pairs
+            .filter(|(_, look)| look.on && look.strength > 0.0)
+            .map(|(light, look)| look.applied_to(light, middle_mm))
+            .collect()
+    }
+
+    /// The environment of a scene as it is looked at; none if it does not shine, so that nobody asks what is open to it.
+    pub fn environment_of(&self, scene: &Scene) -> Option<Environment> {
+        let mut environment = scene.environment.clone().filter(|_| self.surroundings.strength > 0.0)?;
+        environment.radiance_scale *= self.surroundings.strength;
+        environment.rotation_rad += self.surroundings.turn_degrees.to_radians();
+        environment.visible = self.surroundings.visible;
+        Some(environment)
     }
 
     /// Whether everything but the film is the same, so that the frame need not be drawn anew.

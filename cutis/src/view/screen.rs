@@ -3,7 +3,7 @@
 use super::painter::Developing;
 use super::shown::View;
 use super::wireframe;
-use cutis_render::film::{Film, develop, linear_to_srgb};
+use cutis_render::film::{self, Film, develop};
 use cutis_render::{Aov, Frame, Layer};
 use cutis_scene::{Camera, Scene};
 use eframe::egui::{Color32, ColorImage};
@@ -12,17 +12,22 @@ use rayon::prelude::*;
 use std::f32::consts::PI;
 
 /// Display-linear grey behind what is transparent.
-const BEHIND: f32 = 0.02;
+pub const BEHIND: f32 = 0.02;
 /// Colours of the least to the greatest of what has no colour of its own: black, purple, orange, pale yellow, even in
 /// lightness.
 const SCALE: [[u8; 3]; 5] = [[0, 0, 4], [81, 18, 124], [183, 55, 121], [252, 137, 97], [252, 253, 191]];
 
 /// What the camera sees, by the view that was chosen.
 pub fn picture(frame: &Frame, camera: &Camera, how: &Developing, scene: &Scene) -> ColorImage {
-    let mut image = match (how.shown.view, frame.layers.first()) {
+    let image = match (how.shown.view, frame.layers.first()) {
         (View::Layer(aov), Some(layer)) => layer_image(layer, aov, &how.film),
         _ => developed(frame, &how.film),
     };
+    overlaid(image, camera, how, scene)
+}
+
+/// An image with what is drawn over it.
+pub fn overlaid(mut image: ColorImage, camera: &Camera, how: &Developing, scene: &Scene) -> ColorImage {
     if how.shown.wireframe {
         wireframe::draw_over(&mut image, scene, &how.pose, camera);
     }
@@ -30,27 +35,34 @@ pub fn picture(frame: &Frame, camera: &Camera, how: &Developing, scene: &Scene) 
 }
 
 fn developed(frame: &Frame, film: &Film) -> ColorImage {
-    let picture = develop(frame, film);
-    let pixel = |p: &Vec4| encoded(p.truncate() + (1.0 - p.w) * BEHIND);
-    image([frame.width, frame.height], picture.pixels.par_iter().map(pixel).collect())
+    of_codes([frame.width, frame.height], &film::codes(&develop(frame, film), BEHIND))
+}
+
+/// An image of 8-bit codes.
+pub fn of_codes(size: [u32; 2], codes: &[[u8; 4]]) -> ColorImage {
+    image(size, codes.par_iter().map(|&[r, g, b, _]| Color32::from_rgb(r, g, b)).collect())
 }
 
 /// A layer: light as the film exposes it, directions as colours, single numbers on a scale of colours.
 pub fn layer_image(layer: &Layer, aov: Aov, film: &Film) -> ColorImage {
     let [low, high] = range(layer);
     let gain = film.exposure_ev.exp2();
-    let pixel = |p: &Vec4| match aov {
-        Aov::Normal => colour(0.5 + 0.5 * p.truncate()),
-        Aov::Albedo => encoded(p.truncate()),
-        Aov::Charts => chart_colour(p.x),
-        Aov::Stretch | Aov::Thickness => on_scale((p.x - low) / (high - low).max(f32::MIN_POSITIVE)),
-        // As a white sheet in this light would look.
-        Aov::Irradiance | Aov::Blur(_) | Aov::Exitance => {
-            encoded(film.tone_mapper.map(p.truncate() * (gain / PI)))
+    let pixel = |(i, p): (usize, &Vec4)| {
+        let colour = p.truncate();
+        let shown = |linear| encoded(linear, [i as u32 % layer.width, i as u32 / layer.width]);
+        match aov {
+            Aov::Normal => plain(0.5 + 0.5 * colour),
+            Aov::Albedo => shown(colour),
+            Aov::Charts => chart_colour(p.x),
+            Aov::Stretch | Aov::Thickness => on_scale((p.x - low) / (high - low).max(f32::MIN_POSITIVE)),
+            // As a white sheet in this light would look.
+            Aov::Irradiance | Aov::Blur(_) | Aov::Exitance => {
+                shown(film.tone_mapper.map(colour * (gain / PI)))
+            }
+            _ => shown(film.tone_mapper.map(colour * gain)),
         }
-        _ => encoded(film.tone_mapper.map(p.truncate() * gain)),
     };
-    image([layer.width, layer.height], layer.pixels.par_iter().map(pixel).collect())
+    image([layer.width, layer.height], layer.pixels.par_iter().enumerate().map(pixel).collect())
 }
 
 /// What the ends of the scale of a layer stand for: of the first channel's numbers above 0, a hundredth lies below and a
@@ -86,15 +98,17 @@ fn chart_colour(number: f32) -> Color32 {
     // The golden ratio keeps turning round the circle of hues without ever meeting itself.
     let hue = (number * 0.618_034).fract();
     let channel = |shift: f32| 0.5 + 0.4 * (std::f32::consts::TAU * (hue + shift)).cos();
-    colour(Vec3::new(channel(0.0), channel(0.33), channel(0.67)))
+    plain(Vec3::new(channel(0.0), channel(0.33), channel(0.67)))
 }
 
-/// Display-linear light as the screen wants it.
-fn encoded(linear: Vec3) -> Color32 {
-    colour(linear.clamp(Vec3::ZERO, Vec3::ONE).map(linear_to_srgb))
+/// Display-linear light as the screen wants it, dithered by its place.
+fn encoded(linear: Vec3, at: [u32; 2]) -> Color32 {
+    let [r, g, b] = film::encoded(linear, at);
+    Color32::from_rgb(r, g, b)
 }
 
-fn colour(encoded: Vec3) -> Color32 {
+/// A colour that is encoded already.
+fn plain(encoded: Vec3) -> Color32 {
     let [r, g, b] = encoded.clamp(Vec3::ZERO, Vec3::ONE).to_array().map(|c| (255.0 * c + 0.5) as u8);
     Color32::from_rgb(r, g, b)
 }

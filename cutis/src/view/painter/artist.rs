@@ -9,8 +9,10 @@ use crate::backend::Backend;
 use crate::view::look::Look;
 use crate::view::screen;
 use cutis_gpu::GpuRenderer;
+use cutis_render::film::Film;
 use cutis_render::{CpuRenderer, Frame, Layer, RenderError, Renderer, Settings};
 use cutis_scene::Scene;
+use eframe::egui::ColorImage;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -18,7 +20,7 @@ use std::time::Instant;
 #[derive(Default)]
 pub struct Artist {
     cpu: OnCpu,
-    gpu: OnGpu,
+    pub(super) gpu: OnGpu,
 }
 
 /// A frame, and what it was drawn with.
@@ -31,6 +33,8 @@ pub struct Drawn {
     pub machine: String,
     /// What that costs any graphics adapter.
     pub work: Option<Work>,
+    /// The codes of the developed picture, if the machine has developed it.
+    pub codes: Option<Vec<[u8; 4]>>,
 }
 
 /// What to draw: one look at one stage.
@@ -43,6 +47,8 @@ pub struct Subject<'a> {
     pub settings: Settings,
     /// Whether the textures of the passes are wanted.
     pub wants_maps: bool,
+    /// The film that the picture is developed on, if that is what is to be seen.
+    pub film: Option<Film>,
     /// Whether nothing better will follow.
     pub is_best: bool,
 }
@@ -67,7 +73,7 @@ impl Artist {
             camera: look.camera,
             quality,
             is_final,
-            image: screen::picture(&drawn.frame, &look.camera, &look.developing(wish.shown), &wish.scene),
+            image: image(&drawn, look, wish),
             look: look.developing(wish.shown),
             scene: Arc::clone(&wish.scene),
             maps: Arc::new(drawn.maps),
@@ -78,12 +84,13 @@ impl Artist {
         };
         let preview = |frame, quality| {
             let machine = CpuRenderer.adapter();
-            finish(Drawn { frame, maps: Vec::new(), machine, work: None }, quality, false)
+            finish(Drawn { frame, maps: Vec::new(), machine, work: None, codes: None }, quality, false)
         };
         let watch = Watch::new(desk, stage != Stage::Draft, &preview);
         let subject = Subject {
             scene: &wish.scene,
             look,
+            film: settings.aovs.is_empty().then_some(look.film),
             settings,
             wants_maps: wish.shown.wants_maps(),
             is_best: stage == Stage::Fine,
@@ -123,5 +130,17 @@ impl Artist {
 pub fn from_nothing(renderer: &dyn Renderer, subject: &Subject, watch: &Watch) -> Result<Drawn, RenderError> {
     let scene = subject.look.applied_to(subject.scene)?;
     let frame = renderer.render(&scene, &subject.settings, watch)?;
-    Ok(Drawn { frame, maps: Vec::new(), machine: renderer.adapter(), work: None })
+    Ok(Drawn { frame, maps: Vec::new(), machine: renderer.adapter(), work: None, codes: None })
+}
+
+/// What a screen shows of it; developed here where the machine has not done it.
+fn image(drawn: &Drawn, look: &Look, wish: &Wish) -> ColorImage {
+    let how = look.developing(wish.shown);
+    match &drawn.codes {
+        Some(codes) => {
+            let developed = screen::of_codes([drawn.frame.width, drawn.frame.height], codes);
+            screen::overlaid(developed, &look.camera, &how, &wish.scene)
+        }
+        None => screen::picture(&drawn.frame, &look.camera, &how, &wish.scene),
+    }
 }

@@ -4,6 +4,8 @@ mod artist;
 mod on_cpu;
 mod on_gpu;
 mod stage;
+#[cfg(test)]
+mod tests;
 mod watch;
 
 use super::look::Look;

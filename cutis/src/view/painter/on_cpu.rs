@@ -64,6 +64,6 @@ impl OnCpu {
         frame.warnings.clone_from(&kept.warnings);
         let wanted = texture_maps().filter(|_| subject.wants_maps);
         let maps = wanted.filter_map(|aov| kept.lit.texture_layer(aov)).collect();
-        Ok(Drawn { frame, maps, machine: CpuRenderer.adapter(), work: None })
+        Ok(Drawn { frame, maps, machine: CpuRenderer.adapter(), work: None, codes: None })
     }
 }

@@ -5,9 +5,11 @@ use super::artist::{Drawn, Subject};
 use super::watch::Watch;
 use crate::backend::Backend;
 use crate::view::look::{Look, bad_pose};
+use crate::view::screen::BEHIND;
 use crate::view::shown::texture_maps;
 use cutis_gpu::cost::by_pass;
 use cutis_gpu::scene::SceneError;
+use cutis_gpu::scene::development::Developing;
 use cutis_gpu::{Adapters, GpuError, GpuRenderer, GpuScene};
 use cutis_render::technique::texture_space::warnings;
 use cutis_render::{AovSpace, Frame, Progress, RenderError, Renderer, Settings};
@@ -23,12 +25,18 @@ pub struct Devices {
 
 impl Devices {
     /// The renderer on the adapter that a backend means.
-    fn renderer(&mut self, backend: Backend) -> Result<Arc<GpuRenderer>, GpuError> {
+    pub fn renderer(&mut self, backend: Backend) -> Result<Arc<GpuRenderer>, GpuError> {
         let (open, adapters) = match backend {
             Backend::Gpu => (&mut self.any, Adapters::Any),
             _ => (&mut self.hardware, Adapters::Hardware),
         };
         open.get_or_insert_with(|| GpuRenderer::new(adapters).map(Arc::new)).clone()
+    }
+
+    /// With a renderer that passes for one on a graphics processor.
+    #[cfg(test)]
+    pub fn with_hardware(renderer: Arc<GpuRenderer>) -> Self {
+        Self { hardware: Some(Ok(renderer)), any: None }
     }
 
     /// A device that gave up is opened anew the next time.
@@ -58,19 +66,46 @@ struct Kept {
 }
 
 impl Kept {
-    /// Better light than is asked for is welcome, and poses are taken by the device. Shadows are the
+    /// Better light than is asked for is welcome, and poses are taken by the device; other lights are tried. Shadows are the
     /// same at every stage: the device tries enough places of a light's disc from the first. What rays find, and the device
     /// cannot, is found anew for the best picture of a pose.
     fn serves(&self, renderer: &Arc<GpuRenderer>, subject: &Subject) -> bool {
         Arc::ptr_eq(&self.renderer, renderer)
             && Arc::ptr_eq(&self.scene, subject.scene)
-            && self.look.is_lit_like(&Look { pose: self.look.pose.clone(), ..subject.look.clone() })
+            && self.look.is_lit_like(&Look {
+                pose: self.look.pose.clone(),
+                lights: self.look.lights.clone(),
+                surroundings: self.look.surroundings,
+                ..subject.look.clone()
+            })
             && (!subject.is_best || self.uploaded.pose() == subject.look.pose)
             && self.settings.irradiance_size >= subject.settings.irradiance_size
+    }
+
+    /// Takes in the lights of a look. Tells whether that could be done.
+    fn relight(&mut self, look: &Look) -> bool {
+        if self.look.lights == look.lights && self.look.surroundings == look.surroundings {
+            return true;
+        }
+        let lights = std::mem::replace(&mut self.uploaded.lights, look.lights_of(&self.scene));
+        let environment = std::mem::replace(&mut self.uploaded.environment, look.environment_of(&self.scene));
+        let is_relit = self.ready.set_lights(&self.renderer.gpu, &self.uploaded);
+        if is_relit {
+            (self.look.lights, self.look.surroundings) = (look.lights.clone(), look.surroundings);
+        } else {
+            (self.uploaded.lights, self.uploaded.environment) = (lights, environment);
+        }
+        is_relit
     }
 }
 
 impl OnGpu {
+    /// The scene that is kept.
+    #[cfg(test)]
+    pub fn scene(&self) -> Option<&GpuScene> {
+        self.kept.as_ref().map(|kept| &kept.ready)
+    }
+
     /// Draws it.
     ///
     /// # Errors
@@ -81,20 +116,33 @@ impl OnGpu {
         subject: &Subject,
         watch: &Watch,
     ) -> Result<Drawn, RenderError> {
-        let renderer = devices.renderer(subject.look.drawing.backend).map_err(|error| because(&error))?;
-        self.draw_with(&renderer, subject, watch).map_err(|error| match error {
+        // A device that was lost, as when its driver is restarted, is opened anew once.
+        let drawn = match self.try_to_draw(devices, subject, watch) {
+            Err(SceneError::Gpu(GpuError::Lost { .. })) => self.try_to_draw(devices, subject, watch),
+            once => once,
+        };
+        drawn.map_err(|error| match error {
             SceneError::Render(error) => error,
-            SceneError::Gpu(error) => {
-                if matches!(
-                    error,
-                    GpuError::Lost { .. } | GpuError::OutOfMemory { .. } | GpuError::Refused { .. }
-                ) {
-                    devices.forget(&renderer);
-                    self.kept = None;
-                }
-                because(&error)
-            }
+            SceneError::Gpu(error) => RenderError::Backend { reason: error.to_string() },
         })
+    }
+
+    fn try_to_draw(
+        &mut self,
+        devices: &mut Devices,
+        subject: &Subject,
+        watch: &Watch,
+    ) -> Result<Drawn, SceneError> {
+        let renderer = devices.renderer(subject.look.drawing.backend)?;
+        let drawn = self.draw_with(&renderer, subject, watch);
+        if let Err(SceneError::Gpu(
+            GpuError::Lost { .. } | GpuError::OutOfMemory { .. } | GpuError::Refused { .. },
+        )) = &drawn
+        {
+            devices.forget(&renderer);
+            self.kept = None;
+        }
+        drawn
     }
 
     fn draw_with(
@@ -104,7 +152,7 @@ impl OnGpu {
         watch: &Watch,
     ) -> Result<Drawn, SceneError> {
         let Subject { look, settings, scene, .. } = subject;
-        if !self.kept.as_ref().is_some_and(|kept| kept.serves(renderer, subject)) {
+        if !self.kept.as_mut().is_some_and(|kept| kept.serves(renderer, subject) && kept.relight(look)) {
             settings.check().map_err(SceneError::Render)?;
             let uploaded = look.applied_to(scene)?;
             let shadow_samples = Settings::default().shadow_samples;
@@ -131,13 +179,21 @@ impl OnGpu {
         }
         kept.ready.set_picture(&renderer.gpu, &renderer.passes, settings)?;
         kept.ready.set_camera(&renderer.gpu, &look.camera);
+        match subject.film {
+            Some(film) => {
+                let how = Developing { film, behind: BEHIND };
+                kept.ready.set_film(&renderer.gpu, &renderer.passes, how)?;
+            }
+            None => kept.ready.unset_film(),
+        }
         Ok(Self::frame(renderer, kept, subject)?)
     }
 
     fn frame(renderer: &GpuRenderer, kept: &Kept, subject: &Subject) -> Result<Drawn, GpuError> {
         let (settings, ready) = (&subject.settings, &kept.ready);
         let passes = ready.look_timed(&renderer.gpu)?;
-        let pixels = ready.picture(&renderer.gpu)?;
+        // The light itself is what files hold and the pointer reads.
+        let (pixels, codes) = (ready.picture(&renderer.gpu)?, ready.developed(&renderer.gpu)?);
         let layers = ready.layers(&renderer.gpu, &renderer.passes, &settings.aovs, AovSpace::Picture)?;
         let wanted: Vec<_> = texture_maps().filter(|_| subject.wants_maps).collect();
         let maps = ready.layers(&renderer.gpu, &renderer.passes, &wanted, AovSpace::Texture)?;
@@ -153,10 +209,6 @@ impl OnGpu {
             warnings: told,
         };
         let work = Some(Work { memory_bytes: ready.memory_bytes(), costs: by_pass(&ready.costs()) });
-        Ok(Drawn { frame, maps, machine: renderer.adapter(), work })
+        Ok(Drawn { frame, maps, machine: renderer.adapter(), work, codes })
     }
-}
-
-fn because(error: &GpuError) -> RenderError {
-    RenderError::Backend { reason: error.to_string() }
 }

@@ -1,5 +1,5 @@
 //! The window, driven without one.
 
-mod drive;
+pub mod drive;
 mod random;
 mod views;

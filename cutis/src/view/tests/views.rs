@@ -2,6 +2,8 @@
 
 use super::drive::{backends, drag, drop_file, message, press, settle, window};
 use crate::backend::Backend;
+use crate::view::look::Look;
+use crate::view::screen::picture;
 use crate::view::shown::View;
 use cutis_render::Aov;
 use cutis_scene::Wave;
@@ -275,6 +277,54 @@ fn a_wave_moves_what_is_seen_and_rest_is_rest() {
         window.state_mut().looks[0].pose.wave = None;
         settle(&mut window);
         assert_same(&pixels(&window), &before, &backend.to_string());
+    }
+}
+
+#[test]
+fn an_adapter_develops_like_the_processor() {
+    if !backends("an_adapter_develops_like_the_processor").contains(&Backend::Gpu) {
+        return;
+    }
+    let mut window = window([500.0, 300.0], Backend::Gpu);
+    for exposure_ev in [0.0, 1.5] {
+        window.state_mut().looks[0].film.exposure_ev = exposure_ev;
+        // Another picture, so that it is not the one before that is developed anew.
+        window.state_mut().looks[0].camera.position_mm.x += 20.0;
+        settle(&mut window);
+        let painted = window.state().sides[0].painted.clone().expect("is drawn");
+        assert!(
+            painted.frame.passes.iter().any(|pass| pass.name == "tone map"),
+            "the adapter has developed it"
+        );
+        let here = picture(&painted.frame, &painted.camera, &painted.look, &painted.scene);
+        let pairs = || painted.image.pixels.iter().zip(&here.pixels);
+        let most = pairs().flat_map(|(a, b)| (0..3).map(|c| a[c].abs_diff(b[c]))).max();
+        let off = pairs().filter(|(a, b)| a != b).count();
+        assert!(most <= Some(1), "{most:?} codes");
+        // The glow has 16 bits there.
+        assert!(off < here.pixels.len() / 20, "{off} of {} differ", here.pixels.len());
+    }
+}
+
+#[test]
+fn a_light_is_moved_without_a_new_scene() {
+    for backend in backends("a_light_is_moved_without_a_new_scene") {
+        let mut moved = window([500.0, 300.0], backend);
+        settle(&mut moved);
+        let before = pixels(&moved);
+        let change = |look: &mut Look| {
+            look.lights[0].turn_degrees = 50.0;
+            look.lights[1].strength = 2.0;
+            look.surroundings.strength = 0.5;
+        };
+        change(&mut moved.state_mut().looks[0]);
+        settle(&mut moved);
+        let after = pixels(&moved);
+        assert!(after != before, "{backend}");
+        let mut fresh = window([500.0, 300.0], backend);
+        change(&mut fresh.state_mut().looks[0]);
+        settle(&mut fresh);
+        assert_same(&after, &pixels(&fresh), &backend.to_string());
     }
 }
 

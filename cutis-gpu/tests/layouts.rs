@@ -18,6 +18,7 @@ use cutis_gpu::scene::material::GpuMaterial;
 use cutis_gpu::{passes, shaders};
 use cutis_render::passes::tap::NARROW_TEXEL2;
 use cutis_render::passes::transmission::{FADE_DEVIATIONS, VISIBLE};
+use cutis_render::passes::visibility::THINNEST_MM;
 use cutis_render::prepare::rho_dt::{COSINES, ROUGHNESSES};
 use cutis_render::specular_brdf::MIN_ROUGHNESS;
 use std::mem::{offset_of, size_of};
@@ -122,7 +123,7 @@ fn structs_of_the_passes_match_wgsl() {
         Group,
         shaders::VISIBILITY,
         "Group",
-        [first_light, light_count, object, samples, opaque_mm, pad0, pad1, pad2]
+        [first_light, light_count, object, samples, opaque_mm, thickness_scale, pad0, pad1]
     );
     same_layout!(ShareGroup, shaders::SHARES, "Group", [first_light, pad0, pad1, pad2]);
     same_layout!(
@@ -174,6 +175,7 @@ fn constants_match_wgsl() {
         (shaders::TAPS, "NARROW_TEXEL2", NARROW_TEXEL2),
         (shaders::TRANSMISSION, "FADE_DEVIATIONS", f64::from(FADE_DEVIATIONS)),
         (shaders::TRANSMISSION, "VISIBLE", f64::from(VISIBLE)),
+        (shaders::VISIBILITY, "THINNEST_MM", f64::from(THINNEST_MM)),
         (shaders::TAPS, "DEVIATIONS", constant(shaders::BLUR, "DEVIATIONS")),
         (shaders::RESOLVE, "LEVEL", f64::from(LayerKind::Level as u32)),
         (shaders::RESOLVE, "DISTANCES", f64::from(LayerKind::Distances as u32)),

@@ -27,12 +27,12 @@ pub struct Group {
     pub samples: u32,
     /// Distance beyond which nothing comes through, mm.
     pub opaque_mm: f32,
+    /// Factor on distances through the body.
+    pub thickness_scale: f32,
     /// Fills up the struct.
     pub pad0: u32,
     /// Fills up the struct.
     pub pad1: u32,
-    /// Fills up the struct.
-    pub pad2: u32,
 }
 
 /// The pass's pipeline.

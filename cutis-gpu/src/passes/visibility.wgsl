@@ -21,9 +21,10 @@ struct Group {
     samples: u32,
     /// Distance beyond which nothing comes through, mm.
     opaque_mm: f32,
+    /// Factor on distances through the body.
+    thickness_scale: f32,
     pad0: u32,
     pad1: u32,
-    pad2: u32,
 }
 
 struct Visibility {
@@ -85,7 +86,7 @@ fn visibility_at(texel: vec2i, any_extent: bool) -> Visibility {
     return result;
 }
 
-/// Distance d through the body, never more than what is opaque anyway, mm.
+/// Distance d through the body, scaled, never more than what is opaque anyway, mm.
 fn distance_mm(map: LightMap, point_mm: vec3f, normal: vec3f, dir_to_light: vec3f) -> f32 {
     let there = light_facing_surface(map, depths, surfaces, point_mm, group_of.object);
     if !there.found {
@@ -93,7 +94,8 @@ fn distance_mm(map: LightMap, point_mm: vec3f, normal: vec3f, dir_to_light: vec3
     }
     let texel = vec2i(there.uv * vec2f(textureDimensions(places)));
     let normal_there = unpack_unit(textureLoad(places, texel, 0).w);
-    return min(corrected_mm(there.distance_mm, normal, normal_there, dir_to_light), group_of.opaque_mm);
+    let d_mm = corrected_mm(there.distance_mm, normal, normal_there, dir_to_light);
+    return min(scaled_mm(d_mm, group_of.thickness_scale), group_of.opaque_mm);
 }
 
 /// A point and the surface that it lies on.

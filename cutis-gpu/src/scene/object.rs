@@ -239,6 +239,7 @@ impl Lighting<'_> {
             object: self.number,
             samples: shared.shadow_samples,
             opaque_mm: opaque_mm(&maps.kernel),
+            thickness_scale: maps.material.thickness_scale,
             ..Group::zeroed()
         };
         let targets = [&maps.visibility.layers[group as usize], distances];

@@ -199,8 +199,9 @@ impl ObjectPass<'_> {
             Ambient::new(object, &atlas, half_charts.halved(), self.bvh, samples, settings.seed, progress)
         });
         wanted(progress)?;
+        let thickness_scale = object.material.thickness_scale;
         let opaque_mm = opaque_mm(&kernel);
-        let rays = Rays { scene: self.scene, bvh: self.bvh, settings, opaque_mm };
+        let rays = Rays { scene: self.scene, bvh: self.bvh, settings, opaque_mm, thickness_scale };
         let half_size = clock.time("shadows", || HalfSize::new(rays, object, &atlas, &half_charts, progress));
         wanted(progress)?;
         let inputs = IrradianceInputs {
@@ -241,8 +242,9 @@ fn wanted(progress: &dyn Progress) -> Result<(), RenderError> {
 /// The kernel of a material under the diffusion operator of the settings.
 ///
 /// # Errors
-/// If the material cannot be turned into a kernel.
+/// If the material cannot be turned into a kernel, or its thickness scale makes no sense.
 pub fn chosen_kernel(material: &Material, settings: &Settings) -> Result<Kernel, RenderError> {
+    check_thickness_scale(material)?;
     let kernel = kernel_of(material, settings.gaussians)?;
     Ok(match settings.diffusion {
         Diffusion::Separable => kernel.without(&settings.muted_gaussians),
@@ -250,7 +252,16 @@ pub fn chosen_kernel(material: &Material, settings: &Settings) -> Result<Kernel,
     })
 }
 
-/// Thickness of a body beyond which nothing comes through, mm.
+fn check_thickness_scale(material: &Material) -> Result<(), RenderError> {
+    let scale = material.thickness_scale;
+    if scale.is_finite() && scale >= 0.0 {
+        return Ok(());
+    }
+    let reason = format!("its thickness scale is {scale}; it must be finite and not negative");
+    Err(RenderError::BadMaterial { material: material.name.clone(), reason })
+}
+
+/// Thickness of a body, scaled, beyond which nothing comes through, mm.
 pub fn opaque_mm(kernel: &Kernel) -> f32 {
     OPAQUE_DEVIATIONS * kernel.reach_mm()
 }

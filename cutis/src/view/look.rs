@@ -69,6 +69,8 @@ pub struct SkinLook {
     pub albedo_mix: f32,
     /// Factor on the relief of the normal map.
     pub relief: f32,
+    /// Factor on distances through the body.
+    pub thickness: f32,
 }
 
 /// How it is drawn.
@@ -218,6 +220,7 @@ impl SkinLook {
             oiliness: 1.0,
             albedo_mix: material.map_or(0.5, |m| m.albedo_mix),
             relief: 1.0,
+            thickness: 1.0,
         }
     }
 
@@ -232,6 +235,7 @@ impl SkinLook {
         scale(&mut material.roughness, self.roughness);
         scale(&mut material.rho_s, self.oiliness);
         material.albedo_mix = self.albedo_mix;
+        material.thickness_scale *= self.thickness;
         if let Some(normal) = &mut material.normal {
             normal.strength *= self.relief;
         }

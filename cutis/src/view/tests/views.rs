@@ -130,6 +130,19 @@ fn every_preset_is_drawn_and_the_panel_resets() {
 }
 
 #[test]
+fn a_thinner_body_lets_more_light_through() {
+    for backend in backends("a_thinner_body_lets_more_light_through") {
+        let mut window = window(SIZE, backend);
+        let sum = |window: &super::drive::Window| pixels(window).iter().map(|&b| u64::from(b)).sum::<u64>();
+        settle(&mut window);
+        let as_it_is = sum(&window);
+        window.state_mut().looks[0].skin.thickness = 0.2;
+        settle(&mut window);
+        assert!(sum(&window) > as_it_is, "{backend}");
+    }
+}
+
+#[test]
 fn two_looks_are_compared_and_the_truth_refines() {
     let mut window = window([420.0, 320.0], Backend::Cpu);
     press(&mut window, Key::M);
@@ -245,6 +258,7 @@ fn a_saved_scene_opens_as_it_was_left() {
     let mut window = window(SIZE, Backend::Cpu);
     drag(&mut window, pos2(100.0, 150.0), vec2(40.0, 15.0), PointerButton::Primary, Modifiers::NONE);
     window.state_mut().looks[0].skin.preset = Some("marble".to_owned());
+    window.state_mut().looks[0].skin.thickness = 0.5;
     window.state_mut().looks[0].lights[0].turn_degrees = 40.0;
     window.state_mut().looks[0].pose.wave = Some(Wave::sideways(6.0, 90.0, 1.0));
     settle(&mut window);
@@ -256,6 +270,7 @@ fn a_saved_scene_opens_as_it_was_left() {
     let told = message(&mut window);
     settle(&mut window);
     assert_eq!(window.state().original.pose.wave.map(|wave| wave.amplitude_mm), Some(6.0), "{told}");
+    assert_eq!(window.state().scene.objects[0].material.thickness_scale, 0.5, "{told}");
     let after = pixels(&window);
     let off = before.iter().zip(&after).filter(|(a, b)| a.abs_diff(**b) > 2).count();
     // Numbers are rounded to text and back; a pixel at the silhouette may fall to the other side.

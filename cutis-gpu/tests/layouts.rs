@@ -144,7 +144,7 @@ fn structs_of_the_passes_match_wgsl() {
     );
     same_layout!(Slabs, shaders::TRANSMISSION, "Slabs", [all, count, finer_layer, object, many_lights]);
     same_layout!(Smoothing, shaders::SMOOTH, "Smoothing", [step, reach, pad0, pad1]);
-    same_layout!(Wanted, shaders::RESOLVE, "Wanted", [layer, pad0, pad1, pad2]);
+    same_layout!(Wanted, shaders::RESOLVE, "Wanted", [layer, samples, pad0, pad1]);
     same_layout!(Pixels, shaders::DOWNSAMPLE, "Pixels", [grid, pad0, pad1, pad2]);
 }
 
@@ -187,7 +187,8 @@ fn constants_match_wgsl() {
         (shaders::RESOLVE, "DIFFUSE", f64::from(LayerKind::Diffuse as u32)),
         (shaders::RESOLVE, "EXITANCE", f64::from(LayerKind::Exitance as u32)),
         (shaders::RESOLVE, "CHARTS", f64::from(LayerKind::Charts as u32)),
-        (shaders::RESOLVE, "STRETCH", f64::from(LayerKind::Stretch as u32)),
+        (shaders::RESOLVE, "TEXEL", f64::from(LayerKind::Texel as u32)),
+        (shaders::RESOLVE, "SAMPLES", f64::from(LayerKind::Samples as u32)),
     ];
     for (source, name, value) in expected {
         assert_eq!(constant(source, name), value, "{name}");

@@ -20,6 +20,7 @@ use bytemuck::Zeroable;
 use cutis_render::passes::ambient::Ambient;
 use cutis_render::passes::atlas::Atlas;
 use cutis_render::passes::diffusion::{Action, median_texel_mm, plan};
+use cutis_render::passes::seam_map::Seams;
 use cutis_render::passes::stretch::stretch_mm_per_texel;
 use cutis_render::passes::transmission::smoothing_steps;
 use cutis_render::prepare::rho_dt::{COSINES, ROUGHNESSES};
@@ -27,6 +28,7 @@ use cutis_render::prepare::{Kernel, RhoDt};
 use cutis_render::technique::texture_space::opaque_mm;
 use cutis_scene::Object;
 use glam::Vec4;
+use std::sync::Arc;
 use wgpu::TextureFormat as Format;
 
 /// Finest maps that occlusion is kept in: a quarter as wide as the irradiance.
@@ -71,6 +73,8 @@ pub struct ObjectMaps {
     pub local: Map,
     /// Light that came through, at half the size.
     pub transmission: Map,
+    /// Where its charts meet.
+    pub seams: Seams,
     charts: Vec<ChartTexture>,
     material: MaterialMaps,
     ambient: Map,
@@ -105,6 +109,7 @@ impl ObjectMaps {
         let plan = shortened(&plan(unrolled.size, texel_mm, &kernel.variances_mm2), texel_mm);
         tracing::debug!("plan of '{}' with texels of {texel_mm} mm: {plan:?}", object.name);
         let charts = chart_textures(gpu, &unrolled, &plan);
+        let seams = Seams::of(object, Arc::clone(&unrolled.charts));
         let geometry = Geometry::new(gpu, object)?;
         let material = MaterialMaps::new(gpu, &object.material)?;
         let atlas = AtlasMaps::new(gpu, size);
@@ -129,6 +134,7 @@ impl ObjectMaps {
             geometry,
             kernel,
             atlas,
+            seams,
             charts,
             material,
         };

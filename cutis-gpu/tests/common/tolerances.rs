@@ -74,3 +74,5 @@ pub const EQUATION_16: [f64; 2] = [0.03, 2e-5];
 pub const FURNACE: f32 = 6e-3;
 /// Share of a close view of the scan's ear that is lit on the adapter and dark on the processor.
 pub const LEAKED: f32 = 0.0025;
+/// Mismatch of light across seams: the sum of all differences over the sum of the processor's.
+pub const SEAMS: f32 = 0.09;

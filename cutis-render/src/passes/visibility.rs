@@ -30,9 +30,14 @@ pub struct LightFacing {
     pub corrected_mm: f32,
 }
 
+/// Places of a light's disc that are tried where `samples` are wanted: a light without extent has one.
+pub fn places_tried(light: &Light, samples: u32) -> u32 {
+    if light.has_extent() { samples } else { 1 }
+}
+
 /// Fraction of the light's disc that the point sees, by `samples` rays turned by `shift`.
 pub fn visible_fraction(bvh: &Bvh, point: &SurfacePoint, light: &Light, samples: u32, shift: Vec2) -> f32 {
-    let samples = if light.has_extent() { samples } else { 1 };
+    let samples = places_tried(light, samples);
     let origin = bvh.step_off(point.lifted_position_mm, point.flat_normal);
     let seen = (0..samples).filter(|&i| {
         let place = if light.has_extent() { disc(r2_point(i, shift)) } else { Vec2::ZERO };

@@ -122,8 +122,8 @@ fn checkpoint_error(error: crate::film::CheckpointError) -> RenderError {
 fn check_layers(settings: &Settings) -> Result<(), RenderError> {
     let (known, range): (&[Aov], _) = match settings.aov_space {
         AovSpace::Picture => (
-            &[Aov::Diffuse, Aov::Specular, Aov::StandardError],
-            "diffuse, specular or standard-error, as the camera sees them",
+            &[Aov::Diffuse, Aov::Specular, Aov::StandardError, Aov::Samples],
+            "diffuse, specular, standard-error or samples, as the camera sees them",
         ),
         AovSpace::Texture => {
             (&[Aov::Exitance, Aov::StandardError], "exitance or standard-error (of it), as textures")

@@ -63,7 +63,11 @@ fn shift_moves_the_light_and_not_the_camera() {
 
 #[test]
 fn every_view_is_drawn_and_tells_its_values() {
-    let mut window = window(SIZE, Backend::Cpu);
+    backends("every_view_is_drawn_and_tells_its_values").into_iter().for_each(every_view_is_drawn);
+}
+
+fn every_view_is_drawn(backend: Backend) {
+    let mut window = window(SIZE, backend);
     let views = window.state().views();
     let mut pictures = Vec::new();
     for view in views {
@@ -74,7 +78,8 @@ fn every_view_is_drawn_and_tells_its_values() {
         assert!(failure.is_none(), "{view:?}: {failure:?}");
         match view {
             View::Maps => {
-                assert_eq!(side.maps.len(), 10, "irradiance, stretch, six levels, thickness, charts")
+                let what = "irradiance, stretch, six levels, thickness, charts, seams, shadow samples";
+                assert_eq!(side.maps.len(), 12, "{what}")
             }
             // Gaussians narrower than the few texels here are wide change nothing.
             View::Layer(Aov::Blur(0..=3)) => {}

@@ -107,7 +107,7 @@ impl OnGpu {
         if !self.kept.as_ref().is_some_and(|kept| kept.serves(renderer, subject)) {
             settings.check().map_err(SceneError::Render)?;
             let uploaded = look.applied_to(scene)?;
-            let shadow_samples = Settings::default().shadow_samples;
+            let shadow_samples = Settings::default().with_quality(look.drawing.quality).shadow_samples;
             let settings = &Settings { shadow_samples, ..settings.clone() };
             // What is there stays until the better light is: while things move a draft needs it.
             let ready = renderer.scene(&uploaded, settings, watch)?;

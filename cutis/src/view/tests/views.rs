@@ -135,6 +135,25 @@ fn every_preset_is_drawn_and_the_panel_resets() {
 }
 
 #[test]
+fn a_quality_is_chosen_in_the_panel_and_drawn() {
+    for backend in backends("a_quality_is_chosen_in_the_panel_and_drawn") {
+        let mut window = window([900.0, 1400.0], backend);
+        settle(&mut window);
+        let before = pixels(&window);
+        for label in ["quality", "low"] {
+            window.get_by_label(label).click();
+            window.run_steps(4);
+        }
+        let drawing = &window.state().looks[0].drawing;
+        assert_eq!((drawing.quality.to_string().as_str(), drawing.irradiance_size), ("low", 1024));
+        window.state_mut().looks[0].drawing.irradiance_size = 128;
+        settle(&mut window);
+        assert!(window.state().failure(0).is_none(), "{:?}", window.state().failure(0));
+        assert!(pixels(&window) != before, "{backend}: one sample a pixel is not sixteen");
+    }
+}
+
+#[test]
 fn a_thinner_body_lets_more_light_through() {
     for backend in backends("a_thinner_body_lets_more_light_through") {
         let mut window = window(SIZE, backend);

@@ -22,7 +22,7 @@ pub struct Cost {
 
 /// Reads of textures by one invocation of every entry point but those of vertices, counted in its source: one light, as many
 /// Gaussians as skin has at a size, loops as long as for most texels, the default bloom of 1080 rows.
-pub const TAPS: [(&str, u64); 26] = [
+pub const TAPS: [(&str, u64); 27] = [
     ("deform_vertices", 0),
     ("stretch_at_vertices", 0),
     ("unroll", 2),
@@ -31,6 +31,7 @@ pub const TAPS: [(&str, u64); 26] = [
     ("smooth_openness", 51),
     ("see_lights", 96),
     ("see_sharp_lights", 12),
+    ("count_places", 29),
     ("light_texel", 19),
     ("share_lights", 6),
     ("lay_taps", 15),

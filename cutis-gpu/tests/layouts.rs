@@ -21,6 +21,7 @@ use cutis_gpu::{passes, shaders};
 use cutis_render::film::{self, ToneMapper, dither};
 use cutis_render::passes::tap::NARROW_TEXEL2;
 use cutis_render::passes::transmission::{FADE_DEVIATIONS, VISIBLE};
+use cutis_render::passes::visibility::THINNEST_MM;
 use cutis_render::prepare::rho_dt::{COSINES, ROUGHNESSES};
 use cutis_render::specular_brdf::MIN_ROUGHNESS;
 use std::mem::{offset_of, size_of};
@@ -125,7 +126,7 @@ fn structs_of_the_passes_match_wgsl() {
         Group,
         shaders::VISIBILITY,
         "Group",
-        [first_light, light_count, object, samples, opaque_mm, pad0, pad1, pad2]
+        [first_light, light_count, object, samples, opaque_mm, thickness_scale, pad0, pad1]
     );
     same_layout!(ShareGroup, shaders::SHARES, "Group", [first_light, pad0, pad1, pad2]);
     same_layout!(
@@ -149,7 +150,7 @@ fn structs_of_the_passes_match_wgsl() {
     );
     same_layout!(Slabs, shaders::TRANSMISSION, "Slabs", [all, sizes, count, size_count, object, many_lights]);
     same_layout!(Smoothing, shaders::SMOOTH, "Smoothing", [step, reach, pad0, pad1]);
-    same_layout!(Wanted, shaders::RESOLVE, "Wanted", [layer, pad0, pad1, pad2]);
+    same_layout!(Wanted, shaders::RESOLVE, "Wanted", [layer, samples, pad0, pad1]);
     same_layout!(Pixels, shaders::DOWNSAMPLE, "Pixels", [grid, pad0, pad1, pad2]);
     same_layout!(
         GpuFilm,
@@ -188,6 +189,7 @@ fn constants_match_wgsl() {
         (shaders::TAPS, "NARROW_TEXEL2", NARROW_TEXEL2),
         (shaders::TRANSMISSION, "FADE_DEVIATIONS", f64::from(FADE_DEVIATIONS)),
         (shaders::TRANSMISSION, "VISIBLE", f64::from(VISIBLE)),
+        (shaders::VISIBILITY, "THINNEST_MM", f64::from(THINNEST_MM)),
         (shaders::RESOLVE, "LEVEL", f64::from(LayerKind::Level as u32)),
         (shaders::RESOLVE, "DISTANCES", f64::from(LayerKind::Distances as u32)),
         (shaders::RESOLVE, "DISTANCE_OF_ONE", f64::from(LayerKind::DistanceOfOne as u32)),
@@ -198,7 +200,8 @@ fn constants_match_wgsl() {
         (shaders::RESOLVE, "DIFFUSE", f64::from(LayerKind::Diffuse as u32)),
         (shaders::RESOLVE, "EXITANCE", f64::from(LayerKind::Exitance as u32)),
         (shaders::RESOLVE, "CHARTS", f64::from(LayerKind::Charts as u32)),
-        (shaders::RESOLVE, "STRETCH", f64::from(LayerKind::Stretch as u32)),
+        (shaders::RESOLVE, "TEXEL", f64::from(LayerKind::Texel as u32)),
+        (shaders::RESOLVE, "SAMPLES", f64::from(LayerKind::Samples as u32)),
     ];
     for (source, name, value) in expected {
         assert_eq!(constant(source, name), value, "{name}");

@@ -133,12 +133,17 @@ fn distances_through_a_ball_are_those_of_rays() {
         irradiance_w_per_m2: Vec3::ONE,
         angular_radius_rad: 0.0,
     }];
-    let both = Both::new(renderer, &scene, &settings());
-    let wanted: Vec<_> = both.maps().diffused.levels[0].layers[0].iter().map(|d| Vec4::splat(d.w)).collect();
-    let got: Vec<_> = both.texture(Aov::Thickness).iter().map(|d| Vec4::splat(d.x)).collect();
-    let thin = |t: usize| both.inside(t) && wanted[t].x > 0.0;
-    assert!((0..got.len()).filter(|&t| thin(t)).count() > 10_000, "half of the ball is in the dark");
-    difference(&got, &wanted, thin).check("distance", tolerances::DISTANCE);
+    for thickness_scale in [1.0, 0.4, 1.4] {
+        scene.objects[0].material.thickness_scale = thickness_scale;
+        let both = Both::new(renderer, &scene, &settings());
+        let levels = &both.maps().diffused.levels;
+        let wanted: Vec<_> = levels[0].layers[0].iter().map(|d| Vec4::splat(d.w)).collect();
+        let got: Vec<_> = both.texture(Aov::Thickness).iter().map(|d| Vec4::splat(d.x)).collect();
+        let thin = |t: usize| both.inside(t) && wanted[t].x > 0.0;
+        assert!((0..got.len()).filter(|&t| thin(t)).count() > 10_000, "half of the ball is in the dark");
+        let what = format!("distance, scaled by {thickness_scale}");
+        difference(&got, &wanted, thin).check(&what, tolerances::DISTANCE);
+    }
 }
 
 #[test]

@@ -3,12 +3,13 @@
 mod common;
 
 use common::{renderer, tolerances};
+use cutis_gpu::GpuRenderer;
 use cutis_optics::{Profile, RgbGaussianSum, presets};
 use cutis_render::{Aov, Renderer, Settings, Silent};
 use cutis_scene::{
     Camera, Environment, Light, Material, Mesh, Object, ScalarMap, Scattering, Scene, Texels, Texture,
 };
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -78,32 +79,52 @@ fn equation_16(channel: usize, thickness_mm: f64) -> f64 {
     (0..steps).map(ring).sum()
 }
 
+/// Radiance that came through the middle of a slab.
+fn through(renderer: &GpuRenderer, scene: &Scene) -> Vec4 {
+    let settings = Settings {
+        width: 4,
+        height: 4,
+        irradiance_size: 512,
+        samples_per_pixel: 1,
+        aovs: vec![Aov::Transmission],
+        ..Settings::default()
+    };
+    let frame = renderer.render(scene, &settings, &Silent).expect("draws");
+    frame.layers[0].pixels[5]
+}
+
+/// Holds what came through against a slab that is so thick.
+fn check_thickness(seen: Vec4, thickness_mm: f64, what: &str) {
+    let [share, little] = tolerances::EQUATION_16;
+    for channel in 0..3 {
+        let expected = equation_16(channel, thickness_mm);
+        // Leaving light spreads evenly: radiance is exitance over pi. No specular surface, so rho_dt is 1.
+        let got = f64::from(seen[channel]) * std::f64::consts::PI;
+        let slack = share * expected + little;
+        assert!((got - expected).abs() <= slack, "{what}, channel {channel}: {got} against {expected}");
+    }
+}
+
 #[test]
 fn transmission_equals_equation_16() {
     let Some(renderer) = renderer("transmission_equals_equation_16") else { return };
     for thickness_mm in [0.5f32, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0] {
-        let scene = backlit(thickness_mm);
-        let settings = Settings {
-            width: 4,
-            height: 4,
-            irradiance_size: 512,
-            samples_per_pixel: 1,
-            aovs: vec![Aov::Transmission],
-            ..Settings::default()
-        };
-        let frame = renderer.render(&scene, &settings, &Silent).expect("draws");
-        let seen = frame.layers[0].pixels[5];
-        for channel in 0..3 {
-            let expected = equation_16(channel, f64::from(thickness_mm));
-            // Leaving light spreads evenly: radiance is exitance over pi. No specular surface, so rho_dt is 1.
-            let got = f64::from(seen[channel]) * std::f64::consts::PI;
-            let [share, little] = tolerances::EQUATION_16;
-            let slack = share * expected + little;
-            assert!(
-                (got - expected).abs() <= slack,
-                "{thickness_mm} mm, channel {channel}: {got} against {expected}"
-            );
-        }
+        let seen = through(renderer, &backlit(thickness_mm));
+        check_thickness(seen, f64::from(thickness_mm), &format!("{thickness_mm} mm"));
+    }
+}
+
+#[test]
+fn a_slab_is_as_thick_as_its_scale_says() {
+    let Some(renderer) = renderer("a_slab_is_as_thick_as_its_scale_says") else { return };
+    // The last is thicker than what is opaque, and a scale of 0 leaves nothing in between.
+    for (thickness_mm, thickness_scale) in
+        [(2.0f32, 0.0), (3.0, 0.5), (0.5, 2.0), (1.0, 2.0), (3.0, 2.0), (9.0, 2.0)]
+    {
+        let mut scene = backlit(thickness_mm);
+        scene.objects[0].material.thickness_scale = thickness_scale;
+        let what = format!("{thickness_mm} mm, scaled by {thickness_scale}");
+        check_thickness(through(renderer, &scene), f64::from(thickness_mm * thickness_scale), &what);
     }
 }
 

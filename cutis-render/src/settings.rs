@@ -205,6 +205,12 @@ pub enum Aov {
     StandardError,
     /// Number of the UV chart.
     Charts,
+    /// Beside seams: mismatch of diffused light across them, relative to its mean at all seams; and 1 for the seam itself.
+    Seams,
+    /// Samples of a pixel: those that were shaded, and all that were taken.
+    Samples,
+    /// Places of all lights that were tried for a texel, to find out whether they are hidden.
+    ShadowSamples,
 }
 
 /// Gaussians a kernel can have at most in the `blurN` layers.
@@ -225,6 +231,9 @@ impl Aov {
             Aov::Exitance,
             Aov::StandardError,
             Aov::Charts,
+            Aov::Seams,
+            Aov::Samples,
+            Aov::ShadowSamples,
         ];
         before.into_iter().chain(blurs).chain(after).collect()
     }
@@ -238,6 +247,9 @@ impl Aov {
             Self::Thickness => &["light0", "light1", "light2", "light3"],
             Self::Normal => &["X", "Y", "Z"],
             Self::Charts => &["chart"],
+            Self::Seams => &["mismatch", "seam"],
+            Self::Samples => &["shaded", "taken"],
+            Self::ShadowSamples => &["places"],
             _ => &["R", "G", "B"],
         };
         names.iter().map(|&name| name.to_owned()).collect()
@@ -259,6 +271,9 @@ impl fmt::Display for Aov {
             Aov::Exitance => f.write_str("exitance"),
             Aov::StandardError => f.write_str("standard-error"),
             Aov::Charts => f.write_str("charts"),
+            Aov::Seams => f.write_str("seams"),
+            Aov::Samples => f.write_str("samples"),
+            Aov::ShadowSamples => f.write_str("shadow-samples"),
         }
     }
 }

@@ -31,7 +31,7 @@ fn neighbours_that_agree_about_a_shadow_are_right() {
     let (object, bvh, settings) = (&scene.objects[0], Bvh::build(&scene.objects), Settings::default());
     let atlas = Atlas::new(object, 512);
     let half_charts = atlas.charts.halved();
-    let rays = Rays { scene: &scene, bvh: &bvh, settings: &settings, opaque_mm: 15.0 };
+    let rays = Rays { scene: &scene, bvh: &bvh, settings: &settings, opaque_mm: 15.0, thickness_scale: 1.0 };
     let half_size = HalfSize::new(rays, object, &atlas, &half_charts, &Silent);
     for (l, light) in scene.lights.iter().enumerate() {
         let (mut asked, mut answered, mut wrong) = (0, 0, 0);

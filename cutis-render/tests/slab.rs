@@ -4,7 +4,7 @@ use cutis_optics::{Profile, presets};
 use cutis_render::technique::texture_space::LitScene;
 use cutis_render::{Aov, Settings, Silent};
 use cutis_scene::{Camera, Light, Material, Mesh, Object, ScalarMap, Scene};
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, Vec4};
 use std::f64::consts::TAU;
 
 const SIDE_MM: f32 = 160.0;
@@ -73,31 +73,61 @@ fn equation_16(channel: usize, thickness_mm: f64) -> f64 {
     (0..steps).map(ring).sum()
 }
 
+/// Radiance that came through the middle of a slab.
+fn through(scene: &Scene) -> Vec4 {
+    let settings = Settings {
+        width: 4,
+        height: 4,
+        irradiance_size: 512,
+        samples_per_pixel: 1,
+        aovs: vec![Aov::Transmission],
+        ..Settings::default()
+    };
+    let mut lit = LitScene::new(scene, &settings, &Silent).expect("draws");
+    lit.resolve(&scene.camera, &settings, &Silent).expect("draws").layers[0].pixels[5]
+}
+
+/// Holds what came through against a slab that is so thick.
+fn check_thickness(seen: Vec4, thickness_mm: f64, what: &str) {
+    // Below a millionth of the light nothing is seen and the look-up is skipped.
+    let [share, little] = [0.02, 4e-6];
+    for channel in 0..3 {
+        let expected = equation_16(channel, thickness_mm);
+        // Leaving light spreads evenly: radiance is exitance over pi. No specular surface, so rho_dt is 1.
+        let got = f64::from(seen[channel]) * std::f64::consts::PI;
+        let slack = share * expected + little;
+        assert!((got - expected).abs() <= slack, "{what}, channel {channel}: {got} against {expected}");
+    }
+}
+
 #[test]
 fn transmission_equals_equation_16() {
     for thickness_mm in [0.5f32, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0] {
-        let scene = backlit(thickness_mm);
-        let settings = Settings {
-            width: 4,
-            height: 4,
-            irradiance_size: 512,
-            samples_per_pixel: 1,
-            aovs: vec![Aov::Transmission],
-            ..Settings::default()
-        };
-        let mut lit = LitScene::new(&scene, &settings, &Silent).expect("draws");
-        let frame = lit.resolve(&scene.camera, &settings, &Silent).expect("draws");
-        let seen = frame.layers[0].pixels[5];
-        for channel in 0..3 {
-            let expected = equation_16(channel, f64::from(thickness_mm));
-            // Leaving light spreads evenly: radiance is exitance over pi. No specular surface, so rho_dt is 1.
-            let got = f64::from(seen[channel]) * std::f64::consts::PI;
-            // Below a millionth of the light nothing is seen and the look-up is skipped.
-            let slack = 0.02 * expected + 4e-6;
-            assert!(
-                (got - expected).abs() <= slack,
-                "{thickness_mm} mm, channel {channel}: {got} against {expected}"
-            );
-        }
+        let seen = through(&backlit(thickness_mm));
+        check_thickness(seen, f64::from(thickness_mm), &format!("{thickness_mm} mm"));
+    }
+}
+
+#[test]
+fn a_scale_that_makes_no_sense_is_refused() {
+    for scale in [-1.0, f32::NAN, f32::INFINITY] {
+        let mut scene = backlit(1.0);
+        scene.objects[0].material.thickness_scale = scale;
+        let refused =
+            LitScene::new(&scene, &Settings::default(), &Silent).map(|_| ()).expect_err("no such body");
+        assert!(refused.to_string().contains("thickness scale"), "{refused}");
+    }
+}
+
+#[test]
+fn a_slab_is_as_thick_as_its_scale_says() {
+    // The last is thicker than what is opaque, and a scale of 0 leaves nothing in between.
+    for (thickness_mm, thickness_scale) in
+        [(2.0f32, 0.0), (3.0, 0.5), (0.5, 2.0), (1.0, 2.0), (3.0, 2.0), (9.0, 2.0)]
+    {
+        let mut scene = backlit(thickness_mm);
+        scene.objects[0].material.thickness_scale = thickness_scale;
+        let what = format!("{thickness_mm} mm, scaled by {thickness_scale}");
+        check_thickness(through(&scene), f64::from(thickness_mm * thickness_scale), &what);
     }
 }

@@ -75,6 +75,9 @@ pub struct Material {
     pub roughness: ScalarMap,
     /// Fresnel reflectance at normal incidence; 0.028 for skin (index 1.4).
     pub f0: f32,
+    /// Factor on distances through the body: 1 as thick as it is, above 1 less light comes through. An artist's number,
+    /// which the real geometry does not know.
+    pub thickness_scale: f32,
 }
 
 impl Default for Material {
@@ -89,6 +92,7 @@ impl Default for Material {
             rho_s: ScalarMap::constant(1.0),
             roughness: ScalarMap::constant(0.3),
             f0: 0.028,
+            thickness_scale: 1.0,
         }
     }
 }

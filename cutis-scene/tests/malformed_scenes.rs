@@ -86,6 +86,11 @@ fn scene_files() {
         ("mix", scene("[material]\nalbedo_mix = 1.5"), "must be 0 to 1, got 1.5"),
         ("f0", scene("[material]\nf0 = inf"), "must be a finite number"),
         ("huge", scene("[material]\nf0 = 1e300"), "must be a finite number"),
+        ("thin", scene("[material]\nthickness_scale = -0.5"), "must be 0 to 1000000, got -0.5"),
+        ("thick", scene("[material]\nthickness_scale = 1e7"), "must be 0 to 1000000, got 10000000"),
+        ("endless", scene("[material]\nthickness_scale = inf"), "must be a finite number"),
+        ("nan", scene("[material]\nthickness_scale = nan"), "must be a finite number"),
+        ("fat", scene("[material]\nthickness_scale = \"fat\""), "must be a number, found string"),
         ("space", scene("[material]\nnormal_space = \"world\""), "`world` is not known"),
         ("lonely", scene("[material]\nnormal_strength = 2"), "has no `normal` to apply to"),
         (

@@ -49,14 +49,15 @@ fn assert_same_map(a: Option<&Arc<Texture>>, b: Option<&Arc<Texture>>, what: &st
 
 fn assert_same_material(a: &Material, b: &Material) {
     let numbers = |m: &Material| {
-        let Material { name, scattering, albedo, albedo_mix, normal, rho_s, roughness, f0 } = m;
+        let Material { name, scattering, albedo, albedo_mix, normal, rho_s, roughness, f0, thickness_scale } =
+            m;
         let scalar = |map: &ScalarMap| match &map.texture {
             Some((_, channel)) => format!("{} {} {channel}", map.offset, map.gain),
             None => format!("{}", map.offset),
         };
         let relief = normal.as_ref().map(|map| (map.space, map.strength));
         format!(
-            "{name} {scattering:?} {} {albedo_mix} {relief:?} {} {} {f0}",
+            "{name} {scattering:?} {} {albedo_mix} {relief:?} {} {} {f0} {thickness_scale}",
             albedo.factor,
             scalar(rho_s),
             scalar(roughness)
@@ -315,14 +316,16 @@ fn scatterings() -> impl Strategy<Value = Scattering> {
 }
 
 fn materials() -> impl Strategy<Value = Material> {
-    let numbers = (vectors(0.0..1.0), 0.0..1.0f32, 0.0..10.0f32, 0.0..1.0f32, 0.0..1.0f32);
-    (scatterings(), numbers).prop_map(|(scattering, (albedo, albedo_mix, rho_s, roughness, f0))| Material {
+    let shares = prop::array::uniform3(0.0..1.0f32);
+    let numbers = (scatterings(), vectors(0.0..1.0), shares, 0.0..10.0f32, 0.0..1e6f32);
+    numbers.prop_map(|(scattering, albedo, [albedo_mix, roughness, f0], rho_s, thickness_scale)| Material {
         scattering,
         albedo: ColourMap { factor: albedo, texture: None },
         albedo_mix,
         rho_s: ScalarMap::constant(rho_s),
         roughness: ScalarMap::constant(roughness),
         f0,
+        thickness_scale,
         ..Material::default()
     })
 }

@@ -53,6 +53,7 @@ fn material_keys_arrive() {
         "{MESH}[material]\nmedium = {{ sigma_a_per_mm = [0.032, 0.17, 0.48], sigma_s_reduced_per_mm = [0.74, 0.88, \
          1.01], refractive_index = 1.3 }}\nalbedo = \"map.png\"\nalbedo_colour = [0.5, 1, 1]\nalbedo_mix = 1\n\
          normal = \"map.png\"\nnormal_space = \"object\"\nnormal_strength = 0.5\nf0 = 0.04\nroughness = 0.4\n\
+         thickness_scale = 2.5\n\
          specular = {{ path = \"map.png\", channel = \"green\", offset = 0.1, gain = 2 }}\n"
     );
     let material = scene_in(folder.path(), &text).objects.remove(0).material;
@@ -64,6 +65,7 @@ fn material_keys_arrive() {
     assert_eq!((normal.space, normal.strength), (NormalSpace::Object, 0.5));
     assert!((material.rho_s.at(Vec2::ZERO) - (0.1 + 200.0 / 255.0)).abs() < 1e-6);
     assert_eq!((material.roughness.at(Vec2::ZERO), material.f0), (0.4, 0.04));
+    assert_eq!(material.thickness_scale, 2.5);
 }
 
 #[test]

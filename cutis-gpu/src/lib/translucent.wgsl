@@ -1,5 +1,8 @@
 // The light-facing surface behind a point, from a light's translucent shadow map.
 
+/// Thinnest that a factor makes a body, mm: no distance at all says that a light is faced.
+const THINNEST_MM: f32 = 1e-3;
+
 struct LightFacing {
     found: bool,
     /// Whether the map shows nothing nearer to the light than the point: it lies at a silhouette, and what the texel holds is
@@ -48,4 +51,9 @@ fn light_facing_surface(
 fn corrected_mm(distance_mm: f32, normal: vec3f, normal_there: vec3f, dir_to_light: vec3f) -> f32 {
     let opposite = max(-dot(normal_there, normal), 0.0);
     return distance_mm * (1.0 + (abs(dot(normal, dir_to_light)) - 1.0) * opposite);
+}
+
+/// Distance through a body that counts, mm: what was measured times the material's factor.
+fn scaled_mm(distance_mm: f32, thickness_scale: f32) -> f32 {
+    return max(distance_mm * thickness_scale, min(distance_mm, THINNEST_MM));
 }

@@ -6,9 +6,10 @@
 
 struct Wanted {
     layer: u32,
+    /// Samples of a pixel.
+    samples: u32,
     pad0: u32,
     pad1: u32,
-    pad2: u32,
 }
 
 const LEVEL: u32 = 0u;
@@ -21,7 +22,8 @@ const TRANSMISSION: u32 = 6u;
 const DIFFUSE: u32 = 7u;
 const EXITANCE: u32 = 8u;
 const CHARTS: u32 = 9u;
-const STRETCH: u32 = 10u;
+const TEXEL: u32 = 10u;
+const SAMPLES: u32 = 11u;
 
 @fragment
 fn show(seen: Seen) -> @location(0) vec4f {
@@ -41,7 +43,8 @@ fn show(seen: Seen) -> @location(0) vec4f {
         case DIFFUSE: { return vec4f(parts.diffuse + parts.transmission, 1.0); }
         case EXITANCE: { return vec4f(parts.exitance, 1.0); }
         case CHARTS: { return vec4f(f32(place.chart)); }
-        case STRETCH: { return vec4f(textureLoad(level, vec2i(place.uv * vec2f(textureDimensions(level))), 0, 0).xy, 0.0, 1.0); }
+        case SAMPLES: { return vec4f(vec2f(f32(wanted.samples)), 0.0, 0.0); }
+        case TEXEL: { return vec4f(textureLoad(level, vec2i(place.uv * vec2f(textureDimensions(level))), 0, 0).xy, 0.0, 1.0); }
         default: { return vec4f(0.0); }
     }
 }

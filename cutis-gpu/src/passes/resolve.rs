@@ -26,12 +26,12 @@ pub const LAYER: Format = Format::Rgba32Float;
 pub struct Wanted {
     /// [`LayerKind`] as a number.
     pub layer: u32,
+    /// Samples of a pixel.
+    pub samples: u32,
     /// Fills up the struct.
     pub pad0: u32,
     /// Fills up the struct.
     pub pad1: u32,
-    /// Fills up the struct.
-    pub pad2: u32,
 }
 
 /// What a layer shows; the numbers are those of the constants in `layer.wgsl`.
@@ -58,8 +58,10 @@ pub enum LayerKind {
     Exitance = 8,
     /// Number of the chart.
     Charts = 9,
-    /// Millimetres per texel.
-    Stretch = 10,
+    /// Two numbers of a texel, as they are.
+    Texel = 10,
+    /// Samples of the pixel, of which each adds as many: the mean counts those that met the surface.
+    Samples = 11,
 }
 
 /// Everything the pass reads.
@@ -159,16 +161,17 @@ impl ResolvePass {
         draw(&self.shade, bind_groups, inputs, canvas, false)
     }
 
-    /// Draws a layer of an object; `level` is what layers of textures are read from.
+    /// Draws a layer of an object, `samples` in a pixel; `level` is what layers of textures are read from.
     pub fn layer_step(
         &self,
         gpu: &Gpu,
         inputs: &ResolveInputs,
-        kind: LayerKind,
+        (kind, samples): (LayerKind, u32),
         level: &Level,
         canvas: &Canvas,
     ) -> Step {
-        let wanted = gpu.uniform("wanted", &Wanted { layer: kind as u32, ..Wanted::zeroed() });
+        let wanted = Wanted { layer: kind as u32, samples, ..Wanted::zeroed() };
+        let wanted = gpu.uniform("wanted", &wanted);
         let more = [
             (0, Bound::Buffer(&wanted)),
             (1, Bound::Texture(&level.light.array)),

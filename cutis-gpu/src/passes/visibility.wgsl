@@ -21,9 +21,10 @@ struct Group {
     samples: u32,
     /// Distance beyond which nothing comes through, mm.
     opaque_mm: f32,
+    /// Factor on distances through the body.
+    thickness_scale: f32,
     pad0: u32,
     pad1: u32,
-    pad2: u32,
 }
 
 struct Visibility {
@@ -60,9 +61,7 @@ fn visibility_at(texel: vec2i, any_extent: bool) -> Visibility {
     let place = textureLoad(places, texel, 0);
     let point_mm = bitcast<vec3f>(place.xyz);
     let normal = unpack_unit(place.w);
-    let stretch = textureLoad(stretch_map, texel, 0).xyz;
-    let size = vec2f(textureDimensions(charts));
-    let own = Own(point_mm + normal * stretch.z, normal, (vec2f(texel) + 0.5) / size, size * stretch.xy, chart);
+    let own = own_at(texel, chart, point_mm, normal);
     var i = 0u;
     loop {
         let l = group_of.first_light + i;
@@ -85,7 +84,34 @@ fn visibility_at(texel: vec2i, any_extent: bool) -> Visibility {
     return result;
 }
 
-/// Distance d through the body, never more than what is opaque anyway, mm.
+/// How many places of the lights are tried for a texel: those of the search for what may hide them, and of their discs.
+@fragment
+fn count_places(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let texel = vec2i(position.xy);
+    let chart = textureLoad(charts, texel, 0).x;
+    if chart == NO_CHART {
+        return vec4f(0.0);
+    }
+    let place = textureLoad(places, texel, 0);
+    let point_mm = bitcast<vec3f>(place.xyz);
+    let normal = unpack_unit(place.w);
+    let own = own_at(texel, chart, point_mm, normal);
+    var tried = 0u;
+    var i = 0u;
+    loop {
+        let l = group_of.first_light + i;
+        if dot(normal, sample_light(l, point_mm).dir_to_light) >= 0.0 {
+            tried += places_tried(map_of(l), lights[l].extent, own, random2(vec2u(texel), STREAM + l));
+        }
+        continuing {
+            i++;
+            break if i >= group_of.light_count;
+        }
+    }
+    return vec4f(f32(tried), 0.0, 0.0, 0.0);
+}
+
+/// Distance d through the body, scaled, never more than what is opaque anyway, mm.
 fn distance_mm(map: LightMap, point_mm: vec3f, normal: vec3f, dir_to_light: vec3f) -> f32 {
     let there = light_facing_surface(map, depths, surfaces, point_mm, group_of.object);
     if !there.found {
@@ -93,7 +119,8 @@ fn distance_mm(map: LightMap, point_mm: vec3f, normal: vec3f, dir_to_light: vec3
     }
     let texel = vec2i(there.uv * vec2f(textureDimensions(places)));
     let normal_there = unpack_unit(textureLoad(places, texel, 0).w);
-    return min(corrected_mm(there.distance_mm, normal, normal_there, dir_to_light), group_of.opaque_mm);
+    let d_mm = corrected_mm(there.distance_mm, normal, normal_there, dir_to_light);
+    return min(scaled_mm(d_mm, group_of.thickness_scale), group_of.opaque_mm);
 }
 
 /// A point and the surface that it lies on.
@@ -103,6 +130,12 @@ struct Own {
     uv: vec2f,
     mm_per_uv: vec2f,
     chart: u32,
+}
+
+fn own_at(texel: vec2i, chart: u32, point_mm: vec3f, normal: vec3f) -> Own {
+    let stretch = textureLoad(stretch_map, texel, 0).xyz;
+    let size = vec2f(textureDimensions(charts));
+    return Own(point_mm + normal * stretch.z, normal, (vec2f(texel) + 0.5) / size, size * stretch.xy, chart);
 }
 
 /// A point before a light's map.
@@ -131,26 +164,52 @@ fn visible_fraction(map: LightMap, extent: f32, own: Own, shift: vec2f) -> f32 {
     return soft_share(map, extent, to, shift);
 }
 
-/// Share of a disc of light that is seen.
-fn soft_share(map: LightMap, extent: f32, to: Receiver, shift: vec2f) -> f32 {
+fn places_tried(map: LightMap, extent: f32, own: Own, shift: vec2f) -> u32 {
+    if map.layer == NO_MAP {
+        return 0u;
+    }
+    let to = receiver(map, own);
+    if any(to.uv < vec2f(0.0)) || any(to.uv > vec2f(1.0)) {
+        return 0u;
+    }
+    if extent <= 0.0 {
+        return 1u;
+    }
+    return SEARCH_SAMPLES + cone_to(map, extent, to, shift).samples;
+}
+
+/// The cone from a point to a disc of light, where it is cut by what hides it.
+struct Cone {
+    /// Radius on the map.
+    radius: f32,
+    hidden_by_mm: f32,
+    /// Places that have to be tried: none where nothing is in between, nor the horizon.
+    samples: u32,
+}
+
+fn cone_to(map: LightMap, extent: f32, to: Receiver, shift: vec2f) -> Cone {
     let found_mm = blocker_depth_mm(map, extent, to, shift);
     // The horizon is the same at any depth of the cone to the light.
     let hidden_by_mm = select(to.axes_mm.z - 1.0, found_mm, found_mm > 0.0);
     let radius = disc_radius(map, extent, to.axes_mm.z, hidden_by_mm);
-    // Where nothing is in between, nor the horizon, there is nothing to be tried.
     let is_clear = found_mm <= 0.0 && is_high(map, to, radius, hidden_by_mm);
-    let samples = select(group_of.samples, 0u, is_clear);
+    return Cone(radius, hidden_by_mm, select(group_of.samples, 0u, is_clear));
+}
+
+/// Share of a disc of light that is seen.
+fn soft_share(map: LightMap, extent: f32, to: Receiver, shift: vec2f) -> f32 {
+    let cone = cone_to(map, extent, to, shift);
     var sum = 0.0;
     var s = 0u;
     loop {
-        let uv = to.uv + radius * disc(r2_point(s, shift));
-        sum += select(0.0, lit_share(map, to, uv), height_mm(map, to, uv, hidden_by_mm) > 0.0);
+        let uv = to.uv + cone.radius * disc(r2_point(s, shift));
+        sum += select(0.0, lit_share(map, to, uv), height_mm(map, to, uv, cone.hidden_by_mm) > 0.0);
         continuing {
             s++;
-            break if s >= samples;
+            break if s >= cone.samples;
         }
     }
-    return select(sum / f32(group_of.samples), 1.0, is_clear);
+    return select(sum / f32(group_of.samples), 1.0, cone.samples == 0u);
 }
 
 /// Whether what the map shows at a place lies before the point's tangent plane.

@@ -38,6 +38,8 @@ pub struct GpuMaterial {
 pub struct MaterialMaps {
     /// [`GpuMaterial`].
     pub numbers: wgpu::Buffer,
+    /// Factor on distances through the body.
+    pub thickness_scale: f32,
     /// Diffuse colour.
     pub albedo: Map,
     /// Normals.
@@ -58,6 +60,7 @@ impl MaterialMaps {
         let relief = material.normal.as_ref();
         Ok(Self {
             numbers: gpu.uniform("material", &numbers(material)),
+            thickness_scale: material.thickness_scale,
             albedo: texture("albedo", material.albedo.texture.as_deref())?,
             relief: texture("relief", relief.map(|map| map.texture.as_ref()))?,
             rho_s: texture("rho_s", material.rho_s.texture.as_ref().map(|(map, _)| map.as_ref()))?,

@@ -10,6 +10,7 @@ pub mod layers;
 pub mod lights;
 pub mod material;
 pub mod object;
+mod on_demand;
 mod picture;
 pub mod posing;
 pub mod reach;

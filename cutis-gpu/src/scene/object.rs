@@ -19,6 +19,7 @@ use crate::{Gpu, GpuError};
 use bytemuck::Zeroable;
 use cutis_render::passes::atlas::Atlas;
 use cutis_render::passes::diffusion::{Action, median_texel_mm, plan};
+use cutis_render::passes::seam_map::Seams;
 use cutis_render::passes::stretch::stretch_mm_per_texel;
 use cutis_render::passes::transmission::smoothing_steps;
 use cutis_render::prepare::rho_dt::{COSINES, ROUGHNESSES};
@@ -26,6 +27,7 @@ use cutis_render::prepare::{Kernel, RhoDt};
 use cutis_render::technique::texture_space::opaque_mm;
 use cutis_scene::Object;
 use glam::Vec4;
+use std::sync::Arc;
 use wgpu::TextureFormat as Format;
 
 /// What is computed once for an object, by cutis-render.
@@ -72,6 +74,8 @@ pub struct ObjectMaps {
     pub ambient: Map,
     /// Its charts in all sizes.
     pub charts: ChartPyramid,
+    /// Where its charts meet.
+    pub seams: Seams,
     material: MaterialMaps,
     rho_dt: Map,
 }
@@ -103,6 +107,7 @@ impl ObjectMaps {
         let plan = shortened(&plan(unrolled.size, texel_mm, &kernel.variances_mm2), texel_mm);
         tracing::debug!("plan of '{}' with texels of {texel_mm} mm: {plan:?}", object.name);
         let charts = ChartPyramid::new(gpu, &unrolled.charts, halvings(&plan));
+        let seams = Seams::of(object, Arc::clone(&unrolled.charts));
         let geometry = Geometry::new(gpu, object)?;
         let material = MaterialMaps::new(gpu, &object.material)?;
         let atlas = AtlasMaps::new(gpu, size);
@@ -128,6 +133,7 @@ impl ObjectMaps {
             geometry,
             kernel,
             atlas,
+            seams,
             charts,
             material,
         };
@@ -241,6 +247,7 @@ impl Lighting<'_> {
             object: self.number,
             samples: shared.shadow_samples,
             opaque_mm: opaque_mm(&maps.kernel),
+            thickness_scale: maps.material.thickness_scale,
             ..Group::zeroed()
         };
         let targets = [&maps.visibility.layers[group as usize], distances];

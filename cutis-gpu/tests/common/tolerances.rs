@@ -90,3 +90,5 @@ pub const CODES_APART: u8 = 1;
 pub const fn codes_that_differ(spread: f32) -> f32 {
     1e-3 + 0.15 * spread
 }
+/// Mismatch of light across seams: the sum of all differences over the sum of the processor's.
+pub const SEAMS: f32 = 0.09;

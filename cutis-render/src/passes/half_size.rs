@@ -5,7 +5,7 @@
 //! the irradiance pass casts its own rays.
 
 use crate::passes::atlas::{Atlas, ChartMap};
-use crate::passes::visibility::{faces, light_facing_surface, visible_fraction};
+use crate::passes::visibility::{faces, light_facing_surface, scaled_mm, visible_fraction};
 use crate::progress::Progress;
 use crate::sampling::random2;
 use crate::settings::Settings;
@@ -29,6 +29,8 @@ pub struct Rays<'a> {
     pub settings: &'a Settings,
     /// Distance beyond which nothing comes through, mm.
     pub opaque_mm: f32,
+    /// Factor on distances through the body.
+    pub thickness_scale: f32,
 }
 
 impl Rays<'_> {
@@ -44,13 +46,14 @@ impl Rays<'_> {
         Some(visible_fraction(self.bvh, point, light, self.settings.shadow_samples, shift))
     }
 
-    /// Distance d through the body towards a light, mm; 0 on the lit side, and never more than what is opaque anyway.
+    /// Distance d through the body towards a light, scaled, mm; 0 on the lit side, and never more than what is opaque anyway.
     pub fn distance_mm(&self, light: &Light, point: &SurfacePoint) -> f32 {
         if self.opaque_mm <= 0.0 || faces(point, light) {
             return 0.0;
         }
         let there = light_facing_surface(self.scene, self.bvh, point, light);
-        there.map_or(self.opaque_mm, |there| there.corrected_mm.min(self.opaque_mm))
+        let d_mm = there.map(|there| scaled_mm(there.corrected_mm, self.thickness_scale));
+        d_mm.map_or(self.opaque_mm, |d_mm| d_mm.min(self.opaque_mm))
     }
 }
 

@@ -7,7 +7,7 @@
 use crate::passes::ambient::Ambient;
 use crate::passes::atlas::Atlas;
 use crate::passes::half_size::{HalfSize, Rays};
-use crate::passes::visibility::faces;
+use crate::passes::visibility::{faces, places_tried};
 use crate::prepare::{FilteredEnvironment, RhoDt};
 use crate::progress::Progress;
 use crate::sampling::random2;
@@ -44,6 +44,8 @@ pub struct Irradiance {
     pub visibility: Vec<Vec<f32>>,
     /// For every light, its share of the irradiance that comes from lights. Empty for a single light, whose share is 1.
     pub shares: Vec<Vec<f32>>,
+    /// Places of all lights that rays of the texel itself were sent to; 0 where its neighbours at half the size agree.
+    pub tried: Vec<u32>,
 }
 
 /// Layer and component that hold a light's distance.
@@ -56,6 +58,7 @@ struct Row<'a> {
     layers: Vec<&'a mut [Vec4]>,
     visibility: Vec<&'a mut [f32]>,
     shares: Vec<&'a mut [f32]>,
+    tried: &'a mut [u32],
 }
 
 /// Fills the texture.
@@ -66,6 +69,7 @@ pub fn irradiance(inputs: &IrradianceInputs, progress: &dyn Progress) -> Irradia
         layers: vec![vec![Vec4::ZERO; size * size]; 1 + lights.saturating_sub(1).div_ceil(4)],
         visibility: vec![vec![0.0; size * size]; lights],
         shares: vec![vec![0.0; size * size]; if lights > 1 { lights } else { 0 }],
+        tried: vec![0; size * size],
     };
     progress.begin("irradiance", size as u64);
     rows(&mut filled, size).into_par_iter().enumerate().for_each(|(y, mut row)| {
@@ -78,8 +82,8 @@ pub fn irradiance(inputs: &IrradianceInputs, progress: &dyn Progress) -> Irradia
 }
 
 fn rows(filled: &mut Irradiance, size: usize) -> Vec<Row<'_>> {
-    let empty = || Row { layers: Vec::new(), visibility: Vec::new(), shares: Vec::new() };
-    let mut rows: Vec<Row> = (0..size).map(|_| empty()).collect();
+    let row = |tried| Row { layers: Vec::new(), visibility: Vec::new(), shares: Vec::new(), tried };
+    let mut rows: Vec<Row> = filled.tried.chunks_mut(size).map(row).collect();
     for layer in &mut filled.layers {
         rows.iter_mut().zip(layer.chunks_mut(size)).for_each(|(row, slice)| row.layers.push(slice));
     }
@@ -102,12 +106,13 @@ fn light_texel(inputs: &IrradianceInputs, x: usize, y: usize, row: &mut Row) {
     let mut from_lights = Vec3::ZERO;
     for (l, light) in inputs.rays.scene.lights.iter().enumerate() {
         let towards = light.sample(point.position_mm);
-        let visible = visibility(inputs, l, &point, chart, [x, y]);
+        let Seen { visible, tried } = visibility(inputs, l, &point, chart, [x, y]);
         // Relief may turn a normal away from a light that the smooth surface faces.
         let cos = normal.dot(towards.dir_to_light).max(0.0);
         let entered = towards.irradiance_w_per_m2 * (cos * visible * inputs.rho_dt.at(cos, roughness, rho_s));
         from_lights += entered;
         row.visibility[l][x] = visible;
+        row.tried[x] += tried;
         let (layer, component) = distance_slot(l);
         if !faces(&point, light) {
             let near = inputs.half_size.distance_mm(l, point.uv, chart);
@@ -125,23 +130,33 @@ fn light_texel(inputs: &IrradianceInputs, x: usize, y: usize, row: &mut Row) {
     row.layers[0][x] = ((from_lights + from_environment) * film).extend(row.layers[0][x].w);
 }
 
-/// Fraction of a light that the place sees; 0 where the smooth surface faces away from it.
+/// How a light is seen.
+struct Seen {
+    /// Fraction of it.
+    visible: f32,
+    /// Places of it that were tried for that.
+    tried: u32,
+}
+
+/// What the place sees of a light; nothing where the smooth surface faces away from it.
 fn visibility(
     inputs: &IrradianceInputs,
     l: usize,
     point: &SurfacePoint,
     chart: u32,
     [x, y]: [usize; 2],
-) -> f32 {
+) -> Seen {
     let IrradianceInputs { rays, half_size, .. } = inputs;
     let light = &rays.scene.lights[l];
     if !faces(point, light) {
-        return 0.0;
+        return Seen { visible: 0.0, tried: 0 };
     }
-    half_size.visible(l, point.uv, chart, light.has_extent()).unwrap_or_else(|| {
-        let shift = random2(x as u32, y as u32, STREAM + l as u32, rays.settings.seed);
-        rays.visible(light, point, shift).unwrap_or(0.0)
-    })
+    if let Some(visible) = half_size.visible(l, point.uv, chart, light.has_extent()) {
+        return Seen { visible, tried: 0 };
+    }
+    let shift = random2(x as u32, y as u32, STREAM + l as u32, rays.settings.seed);
+    let visible = rays.visible(light, point, shift).unwrap_or(0.0);
+    Seen { visible, tried: places_tried(light, rays.settings.shadow_samples) }
 }
 
 fn from_environment(inputs: &IrradianceInputs, point: &SurfacePoint, normal: Vec3, chart: u32) -> Vec3 {

@@ -9,6 +9,7 @@ pub mod irradiance;
 pub mod object_maps;
 pub mod picture;
 pub mod resolve;
+pub mod seam_map;
 pub mod seams;
 pub mod smooth;
 pub mod specular;

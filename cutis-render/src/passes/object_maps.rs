@@ -3,8 +3,11 @@
 use crate::passes::ambient::Ambient;
 use crate::passes::atlas::{Atlas, ChartMap};
 use crate::passes::diffusion::Diffused;
+use crate::passes::seam_map::Seams;
 use crate::prepare::{Kernel, RhoDt};
-use glam::Vec2;
+use cutis_scene::Object;
+use glam::{Vec2, Vec4};
+use std::sync::Arc;
 
 /// One object's textures and tables.
 pub struct ObjectMaps {
@@ -22,6 +25,8 @@ pub struct ObjectMaps {
     pub visibility: Vec<Vec<f32>>,
     /// Share of each light in the irradiance; empty for a single light.
     pub shares: Vec<Vec<f32>>,
+    /// Places of all lights that were tried for a texel.
+    pub tried: Vec<u32>,
     /// Its diffusion kernel.
     pub kernel: Kernel,
     /// What its surface lets through.
@@ -31,9 +36,20 @@ pub struct ObjectMaps {
 impl ObjectMaps {
     /// Millimetres per texel of the atlas at a place.
     pub fn stretch_at(&self, uv: Vec2) -> Vec2 {
+        self.stretch_mm[self.texel_at(uv)]
+    }
+
+    /// The texel of the atlas that a place lies in.
+    pub fn texel_at(&self, uv: Vec2) -> usize {
         let size = self.atlas.size;
         let texel = (uv * size as f32).clamp(Vec2::ZERO, Vec2::splat(size as f32 - 1.0));
-        self.stretch_mm[texel.y as usize * size + texel.x as usize]
+        texel.y as usize * size + texel.x as usize
+    }
+
+    /// Where its charts meet, and how far the diffused light is apart there: see [`Seams::map`].
+    pub fn seam_map(&self, object: &Object) -> Vec<Vec4> {
+        let seams = Seams::of(object, Arc::clone(&self.atlas.charts));
+        seams.map(|uv, chart| self.diffused.weighted_sum(&self.kernel.weights, uv, chart))
     }
 
     /// Texture distance of two places of one chart in millimetres, by the mean of the stretch at both.

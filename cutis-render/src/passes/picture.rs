@@ -101,7 +101,8 @@ impl<'a> Lens<'a> {
             })
             .collect();
         if let Some((hit, point)) = self.shared_point(&seen) {
-            return self.resolve.shade(&hit, &point, (point.position_mm - eye_mm).normalize());
+            let sample = self.resolve.shade(&hit, &point, (point.position_mm - eye_mm).normalize());
+            return self.counted(sample, 1);
         }
         let mut sum = self.nothing();
         for (dir, hit) in &seen {
@@ -113,7 +114,20 @@ impl<'a> Lens<'a> {
             sum.layers.iter_mut().zip(&sample.layers).for_each(|(sum, value)| *sum += *value);
         }
         let scale = 1.0 / seen.len() as f32;
-        Sample { radiance: sum.radiance * scale, layers: sum.layers.iter().map(|&l| l * scale).collect() }
+        let layers = sum.layers.iter().map(|&l| l * scale).collect();
+        let shaded = seen.iter().filter(|(_, hit)| hit.is_some()).count();
+        self.counted(Sample { radiance: sum.radiance * scale, layers }, shaded)
+    }
+
+    /// Tells in the layer of samples how many of them were shaded.
+    fn counted(&self, mut sample: Sample, shaded: usize) -> Sample {
+        let taken = (self.grid * self.grid) as f32;
+        for (layer, _) in
+            sample.layers.iter_mut().zip(self.resolve.aovs).filter(|(_, aov)| **aov == Aov::Samples)
+        {
+            *layer = Vec4::new(shaded as f32, taken, 0.0, 0.0);
+        }
+        sample
     }
 
     /// Direction of sample `i` of a pixel.

@@ -24,6 +24,8 @@ pub struct Resolve<'a> {
     pub maps: &'a [ObjectMaps],
     /// Light that has come through each of them.
     pub transmission: &'a [Transmission],
+    /// Seams of each of them, where that layer is wanted.
+    pub seams: &'a [Vec<Vec4>],
     /// Layers wanted beside the radiance.
     pub aovs: &'a [Aov],
 }
@@ -51,6 +53,7 @@ struct Place<'a> {
     object: &'a Object,
     maps: &'a ObjectMaps,
     transmission: &'a Transmission,
+    seams: Option<&'a Vec<Vec4>>,
     point: SurfacePoint,
     normal: Vec3,
     chart: u32,
@@ -93,7 +96,8 @@ impl Resolve<'_> {
         let normal = towards_eye(shading_normal(object, point), -dir);
         let chart = object.charts.of_triangle[hit.triangle as usize];
         let transmission = &self.transmission[hit.object as usize];
-        Place { object, maps, transmission, point: *point, normal, chart }
+        let seams = self.seams.get(hit.object as usize);
+        Place { object, maps, transmission, seams, point: *point, normal, chart }
     }
 
     /// The sums of the paper's final pass.
@@ -157,6 +161,10 @@ impl Resolve<'_> {
             // Nothing here is left to chance.
             Aov::StandardError => Vec4::ZERO,
             Aov::Charts => Vec4::splat(place.chart as f32),
+            Aov::Seams => place.seams.map_or(Vec4::ZERO, |map| map[maps.texel_at(uv)]),
+            Aov::ShadowSamples => Vec4::splat(maps.tried[maps.texel_at(uv)] as f32),
+            // The picture counts them.
+            Aov::Samples => Vec4::ZERO,
         }
     }
 

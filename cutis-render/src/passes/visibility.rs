@@ -9,6 +9,9 @@ use crate::sampling::{disc, r2_point};
 use cutis_scene::{Bvh, Light, Scene, SurfacePoint};
 use glam::{Vec2, Vec3};
 
+/// Thinnest that a factor makes a body, mm: no distance at all says that a light is faced.
+pub const THINNEST_MM: f32 = 1e-3;
+
 /// A place on the surface where light enters that leaves at the shadowed point.
 #[derive(Debug, Clone, Copy)]
 pub struct LightFacing {
@@ -27,9 +30,14 @@ pub struct LightFacing {
     pub corrected_mm: f32,
 }
 
+/// Places of a light's disc that are tried where `samples` are wanted: a light without extent has one.
+pub fn places_tried(light: &Light, samples: u32) -> u32 {
+    if light.has_extent() { samples } else { 1 }
+}
+
 /// Fraction of the light's disc that the point sees, by `samples` rays turned by `shift`.
 pub fn visible_fraction(bvh: &Bvh, point: &SurfacePoint, light: &Light, samples: u32, shift: Vec2) -> f32 {
-    let samples = if light.has_extent() { samples } else { 1 };
+    let samples = places_tried(light, samples);
     let origin = bvh.step_off(point.lifted_position_mm, point.flat_normal);
     let seen = (0..samples).filter(|&i| {
         let place = if light.has_extent() { disc(r2_point(i, shift)) } else { Vec2::ZERO };
@@ -37,6 +45,11 @@ pub fn visible_fraction(bvh: &Bvh, point: &SurfacePoint, light: &Light, samples:
         !bvh.occluded(origin, towards.dir_to_light, towards.distance_mm)
     });
     seen.count() as f32 / samples as f32
+}
+
+/// Distance through a body that counts, mm: what was measured times the material's factor.
+pub fn scaled_mm(distance_mm: f32, thickness_scale: f32) -> f32 {
+    (distance_mm * thickness_scale).max(distance_mm.min(THINNEST_MM))
 }
 
 /// Whether the smooth surface faces the light.
@@ -70,4 +83,20 @@ pub fn light_facing_surface(
         distance_mm: hit.distance_mm,
         corrected_mm: hit.distance_mm * (1.0 + (cos - 1.0) * opposite),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scale_of_one_changes_no_bit_and_none_makes_a_body_a_light() {
+        for step in 0..4000 {
+            let d_mm = 1e-6 * 1.01f32.powi(step % 2000) * if step < 2000 { 1.0 } else { 0.999 };
+            assert_eq!(scaled_mm(d_mm, 1.0).to_bits(), d_mm.to_bits(), "{d_mm}");
+            assert!((scaled_mm(d_mm, 3.0) / (3.0 * d_mm) - 1.0).abs() < 1e-6);
+            assert!(scaled_mm(d_mm, 0.0) > 0.0 && scaled_mm(d_mm, 0.0) <= THINNEST_MM);
+        }
+        assert_eq!(scaled_mm(0.0, 1e6), 0.0);
+    }
 }

@@ -10,6 +10,7 @@ use crate::passes::irradiance::{IrradianceInputs, distance_slot, irradiance};
 use crate::passes::object_maps::ObjectMaps;
 use crate::passes::picture::picture;
 use crate::passes::resolve::Resolve;
+use crate::passes::seam_map::chart_numbers;
 use crate::passes::seams::{DiffusionReport, diffusion_report};
 use crate::passes::stretch::stretch_mm_per_texel;
 use crate::passes::transmission::{Bodies, Transmission};
@@ -95,12 +96,18 @@ impl<S: Deref<Target = Scene>> LitScene<S> {
     ) -> Result<Frame, RenderError> {
         let aovs: &[Aov] = if settings.aov_space == AovSpace::Picture { &settings.aovs } else { &[] };
         let environment = self.environment.as_ref();
+        let seams: Vec<_> = if aovs.contains(&Aov::Seams) {
+            self.scene.objects.iter().zip(&self.maps).map(|(object, maps)| maps.seam_map(object)).collect()
+        } else {
+            Vec::new()
+        };
         let resolve = Resolve {
             scene: &self.scene,
             bvh: &self.bvh,
             environment,
             maps: &self.maps,
             transmission: &self.transmission,
+            seams: &seams,
             aovs,
         };
         let frame = self.clock.time("resolve", || picture(&resolve, camera, settings, progress));
@@ -150,9 +157,10 @@ impl<S: Deref<Target = Scene>> LitScene<S> {
             Aov::Stretch => {
                 (maps.atlas.size, maps.stretch_mm.iter().map(|s| s.extend(0.0).extend(0.0)).collect())
             }
-            Aov::Charts => {
-                let number = |&c: &u32| Vec4::splat(if c == u32::MAX { -1.0 } else { c as f32 });
-                (maps.atlas.size, maps.atlas.charts.chart.iter().map(number).collect())
+            Aov::Charts => (maps.atlas.size, chart_numbers(&maps.atlas.charts)),
+            Aov::Seams => (maps.atlas.size, maps.seam_map(self.scene.objects.first()?)),
+            Aov::ShadowSamples => {
+                (maps.atlas.size, maps.tried.iter().map(|&tried| Vec4::splat(tried as f32)).collect())
             }
             Aov::Normal
             | Aov::Albedo
@@ -160,6 +168,7 @@ impl<S: Deref<Target = Scene>> LitScene<S> {
             | Aov::Transmission
             | Aov::Diffuse
             | Aov::Exitance
+            | Aov::Samples
             | Aov::StandardError => return None,
         };
         Some(Layer {
@@ -199,8 +208,9 @@ impl ObjectPass<'_> {
             Ambient::new(object, &atlas, half_charts.halved(), self.bvh, samples, settings.seed, progress)
         });
         wanted(progress)?;
+        let thickness_scale = object.material.thickness_scale;
         let opaque_mm = opaque_mm(&kernel);
-        let rays = Rays { scene: self.scene, bvh: self.bvh, settings, opaque_mm };
+        let rays = Rays { scene: self.scene, bvh: self.bvh, settings, opaque_mm, thickness_scale };
         let half_size = clock.time("shadows", || HalfSize::new(rays, object, &atlas, &half_charts, progress));
         wanted(progress)?;
         let inputs = IrradianceInputs {
@@ -227,6 +237,7 @@ impl ObjectPass<'_> {
             diffused,
             visibility: lit.visibility,
             shares: lit.shares,
+            tried: lit.tried,
             kernel,
             rho_dt,
         })
@@ -241,8 +252,9 @@ fn wanted(progress: &dyn Progress) -> Result<(), RenderError> {
 /// The kernel of a material under the diffusion operator of the settings.
 ///
 /// # Errors
-/// If the material cannot be turned into a kernel.
+/// If the material cannot be turned into a kernel, or its thickness scale makes no sense.
 pub fn chosen_kernel(material: &Material, settings: &Settings) -> Result<Kernel, RenderError> {
+    check_thickness_scale(material)?;
     let kernel = kernel_of(material, settings.gaussians)?;
     Ok(match settings.diffusion {
         Diffusion::Separable => kernel.without(&settings.muted_gaussians),
@@ -250,7 +262,16 @@ pub fn chosen_kernel(material: &Material, settings: &Settings) -> Result<Kernel,
     })
 }
 
-/// Thickness of a body beyond which nothing comes through, mm.
+fn check_thickness_scale(material: &Material) -> Result<(), RenderError> {
+    let scale = material.thickness_scale;
+    if scale.is_finite() && scale >= 0.0 {
+        return Ok(());
+    }
+    let reason = format!("its thickness scale is {scale}; it must be finite and not negative");
+    Err(RenderError::BadMaterial { material: material.name.clone(), reason })
+}
+
+/// Thickness of a body, scaled, beyond which nothing comes through, mm.
 pub fn opaque_mm(kernel: &Kernel) -> f32 {
     OPAQUE_DEVIATIONS * kernel.reach_mm()
 }

@@ -51,6 +51,7 @@ pub(super) fn keys(
     put("specular", scalar(&material.rho_s, source, files)?);
     put("roughness", scalar(&material.roughness, source, files)?);
     put("f0", number(material.f0));
+    put("thickness_scale", number(material.thickness_scale));
     Ok(text)
 }
 

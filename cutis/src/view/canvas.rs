@@ -3,7 +3,7 @@
 use super::app::Viewer;
 use super::mouse::{Movement, movement};
 use super::screen::range;
-use super::shown::{View, unit};
+use super::shown::{View, is_scaled, unit};
 use super::side::{Side, Tile, value_of};
 use cutis_render::Aov;
 use eframe::egui::{
@@ -109,7 +109,7 @@ fn tell_range(viewer: &Viewer, painter: &Painter, rect: Rect) {
     let View::Layer(aov) = viewer.shown.view else { return };
     let layer = viewer.sides[0].painted.as_ref().and_then(|p| p.frame.layers.first());
     let what = match layer {
-        Some(layer) if matches!(aov, Aov::Stretch | Aov::Thickness) => {
+        Some(layer) if is_scaled(aov) => {
             let [low, high] = range(layer);
             format!("{aov}: dark {low:.3}, bright {high:.3} {}", unit(aov))
         }

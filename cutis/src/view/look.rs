@@ -5,7 +5,8 @@ use super::shown::Shown;
 use crate::backend::Backend;
 use cutis_render::film::Film;
 use cutis_render::prepare::kernel::stretched;
-use cutis_render::{Diffusion, RenderError, TechniqueName};
+use cutis_render::settings::Quality;
+use cutis_render::{Diffusion, RenderError, Settings, TechniqueName};
 use cutis_scene::{Camera, Environment, Light, Material, Pose, PoseError, ScalarMap, Scattering, Scene};
 use glam::{Quat, Vec3};
 
@@ -69,6 +70,8 @@ pub struct SkinLook {
     pub albedo_mix: f32,
     /// Factor on the relief of the normal map.
     pub relief: f32,
+    /// Factor on distances through the body.
+    pub thickness: f32,
 }
 
 /// How it is drawn.
@@ -80,12 +83,25 @@ pub struct Drawing {
     pub diffusion: Diffusion,
     /// Where it is computed.
     pub backend: Backend,
+    /// How much work it is worth.
+    pub quality: Quality,
     /// Width and height of the irradiance texture, texels.
     pub irradiance_size: u32,
     /// Gaussians of a material that is given by its coefficients.
     pub gaussians: usize,
     /// Numbers of the Gaussians that are left out.
     pub muted_gaussians: Vec<usize>,
+}
+
+impl Drawing {
+    /// Chooses a quality, with the texture that belongs to it; `auto` is what the window begins with.
+    pub fn set_quality(&mut self, quality: Quality) {
+        self.quality = quality;
+        self.irradiance_size = match quality {
+            Quality::Auto => Self::default().irradiance_size,
+            _ => Settings::default().with_quality(quality).irradiance_size,
+        };
+    }
 }
 
 /// Factors that change nothing.
@@ -223,6 +239,7 @@ impl SkinLook {
             oiliness: 1.0,
             albedo_mix: material.map_or(0.5, |m| m.albedo_mix),
             relief: 1.0,
+            thickness: 1.0,
         }
     }
 
@@ -237,6 +254,7 @@ impl SkinLook {
         scale(&mut material.roughness, self.roughness);
         scale(&mut material.rho_s, self.oiliness);
         material.albedo_mix = self.albedo_mix;
+        material.thickness_scale *= self.thickness;
         if let Some(normal) = &mut material.normal {
             normal.strength *= self.relief;
         }

@@ -27,6 +27,7 @@ use crate::job::{must_exist, named};
 use crate::scene_source::SceneSource;
 use app::Viewer;
 use cutis_render::Settings;
+use cutis_render::settings::Quality;
 use cutis_scene::ReadOptions;
 use cutis_scene::head::HeadDetail;
 use eframe::egui;
@@ -76,6 +77,7 @@ impl Default for Drawing {
             technique,
             diffusion,
             backend: Backend::Auto,
+            quality: Quality::Auto,
             irradiance_size: 1024,
             gaussians,
             muted_gaussians: Vec::new(),

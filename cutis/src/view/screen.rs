@@ -1,7 +1,7 @@
 //! From light to what a screen shows: the developed picture, layers in true or false colour, triangles over them.
 
 use super::painter::Developing;
-use super::shown::View;
+use super::shown::{View, is_scaled};
 use super::wireframe;
 use cutis_render::film::{self, Film, develop};
 use cutis_render::{Aov, Frame, Layer};
@@ -54,7 +54,7 @@ pub fn layer_image(layer: &Layer, aov: Aov, film: &Film) -> ColorImage {
             Aov::Normal => plain(0.5 + 0.5 * colour),
             Aov::Albedo => shown(colour),
             Aov::Charts => chart_colour(p.x),
-            Aov::Stretch | Aov::Thickness => on_scale((p.x - low) / (high - low).max(f32::MIN_POSITIVE)),
+            _ if is_scaled(aov) => on_scale((p.x - low) / (high - low).max(f32::MIN_POSITIVE)),
             // As a white sheet in this light would look.
             Aov::Irradiance | Aov::Blur(_) | Aov::Exitance => {
                 shown(film.tone_mapper.map(colour * (gain / PI)))

@@ -42,7 +42,7 @@ impl Shown {
 
 /// Layers that the truth can tell.
 fn of_truth(aov: Aov) -> bool {
-    matches!(aov, Aov::Diffuse | Aov::Specular | Aov::StandardError)
+    matches!(aov, Aov::Diffuse | Aov::Specular | Aov::StandardError | Aov::Samples)
 }
 
 /// Layers as the camera sees them.
@@ -55,9 +55,15 @@ pub fn camera_layers(technique: TechniqueName) -> impl Iterator<Item = Aov> {
 /// Textures of the passes, in their order.
 pub fn texture_maps() -> impl Iterator<Item = Aov> {
     let is_texture = |aov: &Aov| {
-        matches!(aov, Aov::Irradiance | Aov::Stretch | Aov::Blur(_) | Aov::Thickness | Aov::Charts)
+        let of_light = matches!(aov, Aov::Irradiance | Aov::Blur(_) | Aov::Thickness | Aov::ShadowSamples);
+        of_light || matches!(aov, Aov::Stretch | Aov::Charts | Aov::Seams)
     };
     Aov::all().into_iter().filter(is_texture)
+}
+
+/// Whether a layer holds plain numbers, which a scale of colours shows.
+pub fn is_scaled(aov: Aov) -> bool {
+    matches!(aov, Aov::Stretch | Aov::Thickness | Aov::Seams | Aov::Samples | Aov::ShadowSamples)
 }
 
 /// What a layer's numbers are measured in.
@@ -67,6 +73,9 @@ pub fn unit(aov: Aov) -> &'static str {
         Aov::Stretch => "mm per texel",
         Aov::Thickness => "mm",
         Aov::Specular | Aov::Transmission | Aov::Diffuse | Aov::StandardError => "W/(m² sr)",
+        Aov::Seams => "of the mean light at seams; 1 at a seam",
+        Aov::Samples => "shaded, taken",
+        Aov::ShadowSamples => "places of lights",
         Aov::Normal | Aov::Albedo | Aov::Charts => "",
     }
 }

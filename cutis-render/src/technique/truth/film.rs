@@ -141,6 +141,7 @@ impl Film {
                 .map(|pixel| match aov {
                     Aov::Diffuse => of(pixel.diffuse / samples, pixel),
                     Aov::Specular => of(pixel.specular / samples, pixel),
+                    Aov::Samples => Vec4::new(pixel.covered as f32, pixel.all.count() as f32, 0.0, 0.0),
                     _ => of(pixel.all.standard_error(), pixel),
                 })
                 .collect::<Vec<Vec4>>(),

@@ -55,7 +55,18 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
         passes.push(PassTime { name: "exitance".to_owned(), time: start.elapsed() });
     }
     frame.passes = passes;
+    frame.warnings = warnings(scene);
     Ok(frame)
+}
+
+/// What a person should know of a scene that is drawn by this technique.
+fn warnings(scene: &Scene) -> Vec<String> {
+    let scaled = scene.objects.iter().filter(|object| object.material.thickness_scale != 1.0);
+    let words = scaled.map(|object| {
+        let (name, scale) = (&object.name, object.material.thickness_scale);
+        format!("the truth takes '{name}' as thick as it is: it does not know the thickness scale of {scale}")
+    });
+    words.collect()
 }
 
 /// Takes samples until there are enough, or the noise is low enough.
@@ -111,8 +122,8 @@ fn checkpoint_error(error: crate::film::CheckpointError) -> RenderError {
 fn check_layers(settings: &Settings) -> Result<(), RenderError> {
     let (known, range): (&[Aov], _) = match settings.aov_space {
         AovSpace::Picture => (
-            &[Aov::Diffuse, Aov::Specular, Aov::StandardError],
-            "diffuse, specular or standard-error, as the camera sees them",
+            &[Aov::Diffuse, Aov::Specular, Aov::StandardError, Aov::Samples],
+            "diffuse, specular, standard-error or samples, as the camera sees them",
         ),
         AovSpace::Texture => {
             (&[Aov::Exitance, Aov::StandardError], "exitance or standard-error (of it), as textures")

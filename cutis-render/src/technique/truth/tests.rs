@@ -65,6 +65,27 @@ fn going_on_gives_what_doing_it_at_once_gives() {
 }
 
 #[test]
+fn a_thickness_scale_is_not_known_and_that_is_told() {
+    let scene = ball_in_light(0.4, 8.0);
+    let plain = drawn(&scene, &small(2));
+    assert!(plain.warnings.is_empty(), "{:?}", plain.warnings);
+    let mut scaled = scene.clone();
+    scaled.objects[0].material.thickness_scale = 2.5;
+    let scaled = drawn(&scaled, &small(2));
+    assert_same_bits(&plain, &scaled);
+    assert!(scaled.warnings[0].contains("does not know the thickness scale of 2.5"), "{:?}", scaled.warnings);
+}
+
+#[test]
+fn the_samples_that_were_taken_are_told() {
+    let scene = ball_in_light(0.4, 8.0);
+    let frame = drawn(&scene, &Settings { aovs: vec![Aov::Samples], ..small(3) });
+    let pixels = &frame.layers[0].pixels;
+    assert!(pixels.iter().all(|p| p.y == 3.0 && p.x <= 3.0 && p.x.fract() == 0.0), "{pixels:?}");
+    assert!(pixels.iter().any(|p| p.x == 3.0), "the ball is met");
+}
+
+#[test]
 fn exitance_goes_on_where_it_stopped() {
     let folder = tempfile::tempdir().unwrap();
     let scene = ball_in_light(0.4, 8.0);

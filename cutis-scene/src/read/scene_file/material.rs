@@ -9,7 +9,7 @@ use cutis_optics::{Medium, RgbGaussianSum};
 use glam::Vec3;
 use std::sync::Arc;
 
-const KNOWN: [&str; 12] = [
+const KNOWN: [&str; 13] = [
     "preset",
     "medium",
     "kernel",
@@ -22,10 +22,14 @@ const KNOWN: [&str; 12] = [
     "specular",
     "roughness",
     "f0",
+    "thickness_scale",
 ];
 
 /// Most Gaussians of a kernel.
 const MAX_GAUSSIANS: usize = 64;
+
+/// Largest factor on distances through the body: it makes a micrometre a metre.
+const MAX_THICKNESS_SCALE: f32 = 1e6;
 
 /// The parts of a material that a scene file gives.
 #[derive(Debug, Clone, Default)]
@@ -38,6 +42,7 @@ pub(super) struct Change {
     rho_s: Option<ScalarMap>,
     roughness: Option<ScalarMap>,
     f0: Option<f32>,
+    thickness_scale: Option<f32>,
 }
 
 impl Change {
@@ -57,6 +62,7 @@ impl Change {
         set(&mut material.rho_s, &self.rho_s);
         set(&mut material.roughness, &self.roughness);
         set(&mut material.f0, &self.f0);
+        set(&mut material.thickness_scale, &self.thickness_scale);
         set(&mut material.normal, &self.normal);
     }
 }
@@ -85,6 +91,7 @@ pub(super) fn read(keys: &Keys, own: &Material, context: &mut Context) -> Result
         rho_s: scalar(keys, "specular", 0.0..=10.0, ScalarMap::measured_rho_s, images)?,
         roughness: scalar(keys, "roughness", 0.0..=1.0, ScalarMap::measured_roughness, images)?,
         f0: keys.number_in("f0", 0.0..=1.0)?,
+        thickness_scale: keys.number_in("thickness_scale", 0.0..=MAX_THICKNESS_SCALE)?,
     })
 }
 

@@ -49,8 +49,6 @@ pub struct Subject<'a> {
     pub wants_maps: bool,
     /// The film that the picture is developed on, if that is what is to be seen.
     pub film: Option<Film>,
-    /// Whether nothing better will follow.
-    pub is_best: bool,
 }
 
 impl Artist {
@@ -93,7 +91,6 @@ impl Artist {
             film: settings.aovs.is_empty().then_some(look.film),
             settings,
             wants_maps: wish.shown.wants_maps(),
-            is_best: stage == Stage::Fine,
         };
         match self.draw(devices, &subject, &watch) {
             Ok(drawn) => Ok(Some(finish(drawn, stage.name().to_owned(), stage == Stage::Fine))),

@@ -67,8 +67,7 @@ struct Kept {
 
 impl Kept {
     /// Better light than is asked for is welcome, and poses are taken by the device; other lights are tried. Shadows are the
-    /// same at every stage: the device tries enough places of a light's disc from the first. What rays find, and the device
-    /// cannot, is found anew for the best picture of a pose.
+    /// same at every stage: the device tries enough places of a light's disc from the first.
     fn serves(&self, renderer: &Arc<GpuRenderer>, subject: &Subject) -> bool {
         Arc::ptr_eq(&self.renderer, renderer)
             && Arc::ptr_eq(&self.scene, subject.scene)
@@ -78,7 +77,6 @@ impl Kept {
                 surroundings: self.look.surroundings,
                 ..subject.look.clone()
             })
-            && (!subject.is_best || self.uploaded.pose() == subject.look.pose)
             && self.settings.irradiance_size >= subject.settings.irradiance_size
     }
 
@@ -155,7 +153,7 @@ impl OnGpu {
         if !self.kept.as_mut().is_some_and(|kept| kept.serves(renderer, subject) && kept.relight(look)) {
             settings.check().map_err(SceneError::Render)?;
             let uploaded = look.applied_to(scene)?;
-            let shadow_samples = Settings::default().shadow_samples;
+            let shadow_samples = Settings::default().with_quality(look.drawing.quality).shadow_samples;
             let settings = &Settings { shadow_samples, ..settings.clone() };
             // What is there stays until the better light is: while things move a draft needs it.
             let ready = renderer.scene(&uploaded, settings, watch)?;

@@ -1,6 +1,7 @@
 //! How good a picture is: a draft at once, then the whole, then the fine one.
 
 use crate::view::look::Drawing;
+use cutis_render::settings::Quality;
 use cutis_render::{Settings, TechniqueName};
 
 /// A step on the way to the best picture.
@@ -41,11 +42,16 @@ impl Stage {
     pub fn settings(self, drawing: &Drawing, size: [u32; 2]) -> Settings {
         let Drawing { technique, diffusion, irradiance_size, gaussians, .. } = *drawing;
         let size = size.map(|side| if self == Stage::Draft { side.div_ceil(2) } else { side }.max(1));
+        let plain = Settings::default().with_quality(drawing.quality);
+        // Left to itself, the window goes beyond what a picture in a file is worth: there is time.
+        let (samples, shadow_samples) = match (self, drawing.quality) {
+            (Stage::Fine, Quality::Auto) => (16, 32),
+            _ => (plain.samples_per_pixel, plain.shadow_samples),
+        };
         let samples_per_pixel = match (self, technique.is_estimated()) {
             (Stage::Draft, _) => 1,
             (Stage::Fine, true) => TRUTH_SAMPLES,
-            (_, true) | (Stage::Whole, _) => 4,
-            (Stage::Fine, _) => 16,
+            _ => samples,
         };
         Settings {
             technique,
@@ -60,9 +66,31 @@ impl Stage {
             },
             gaussians,
             muted_gaussians: drawing.muted_gaussians.clone(),
-            shadow_samples: if self == Stage::Fine { 32 } else { Settings::default().shadow_samples },
+            shadow_samples,
+            ambient_samples: plain.ambient_samples,
             close_holes: true,
             ..Settings::default()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_best_picture_of_a_quality_has_its_samples() {
+        let mut drawing = Drawing::default();
+        for quality in [Quality::Full, Quality::Low] {
+            drawing.set_quality(quality);
+            let (fine, plain) =
+                (Stage::Fine.settings(&drawing, [64, 48]), Settings::default().with_quality(quality));
+            let numbers =
+                |s: &Settings| [s.irradiance_size, s.samples_per_pixel, s.shadow_samples, s.ambient_samples];
+            assert_eq!(numbers(&fine), numbers(&plain), "{quality}");
+            assert_eq!([fine.width, fine.height], [64, 48], "the window says how large");
+        }
+        drawing.set_quality(Quality::Auto);
+        assert_eq!(drawing, Drawing::default(), "the way back");
     }
 }

@@ -33,6 +33,9 @@ pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
     linear("albedo before scattering", hint, 0.0..=1.0, original.skin.albedo_mix)
         .show(ui, &mut skin.albedo_mix);
     linear("× relief", "factor on the normal map", 0.0..=3.0, 1.0).show(ui, &mut skin.relief);
+    let hint = "factor on distances through the body: the less, the more light comes through ears and fingers; \
+                the truth does not know it";
+    linear("× thickness", hint, 0.0..=4.0, 1.0).show(ui, &mut skin.thickness);
     let mut material = viewer.scene.objects.first().map(|object| object.material.clone());
     material.iter_mut().for_each(|material| skin.apply_to(material));
     let gaussians = look.drawing.gaussians;

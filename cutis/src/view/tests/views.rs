@@ -65,7 +65,11 @@ fn shift_moves_the_light_and_not_the_camera() {
 
 #[test]
 fn every_view_is_drawn_and_tells_its_values() {
-    let mut window = window(SIZE, Backend::Cpu);
+    backends("every_view_is_drawn_and_tells_its_values").into_iter().for_each(every_view_is_drawn);
+}
+
+fn every_view_is_drawn(backend: Backend) {
+    let mut window = window(SIZE, backend);
     let views = window.state().views();
     let mut pictures = Vec::new();
     for view in views {
@@ -76,7 +80,8 @@ fn every_view_is_drawn_and_tells_its_values() {
         assert!(failure.is_none(), "{view:?}: {failure:?}");
         match view {
             View::Maps => {
-                assert_eq!(side.maps.len(), 10, "irradiance, stretch, six levels, thickness, charts")
+                let what = "irradiance, stretch, six levels, thickness, charts, seams, shadow samples";
+                assert_eq!(side.maps.len(), 12, "{what}")
             }
             // Gaussians narrower than the few texels here are wide change nothing.
             View::Layer(Aov::Blur(0..=3)) => {}
@@ -129,6 +134,38 @@ fn every_preset_is_drawn_and_the_panel_resets() {
     window.state_mut().looks[0] = original;
     settle(&mut window);
     assert_same(&pixels(&window), &before, "the picture");
+}
+
+#[test]
+fn a_quality_is_chosen_in_the_panel_and_drawn() {
+    for backend in backends("a_quality_is_chosen_in_the_panel_and_drawn") {
+        let mut window = window([900.0, 1400.0], backend);
+        settle(&mut window);
+        let before = pixels(&window);
+        for label in ["quality", "low"] {
+            window.get_by_label(label).click();
+            window.run_steps(4);
+        }
+        let drawing = &window.state().looks[0].drawing;
+        assert_eq!((drawing.quality.to_string().as_str(), drawing.irradiance_size), ("low", 1024));
+        window.state_mut().looks[0].drawing.irradiance_size = 128;
+        settle(&mut window);
+        assert!(window.state().failure(0).is_none(), "{:?}", window.state().failure(0));
+        assert!(pixels(&window) != before, "{backend}: one sample a pixel is not sixteen");
+    }
+}
+
+#[test]
+fn a_thinner_body_lets_more_light_through() {
+    for backend in backends("a_thinner_body_lets_more_light_through") {
+        let mut window = window(SIZE, backend);
+        let sum = |window: &super::drive::Window| pixels(window).iter().map(|&b| u64::from(b)).sum::<u64>();
+        settle(&mut window);
+        let as_it_is = sum(&window);
+        window.state_mut().looks[0].skin.thickness = 0.2;
+        settle(&mut window);
+        assert!(sum(&window) > as_it_is, "{backend}");
+    }
 }
 
 #[test]
@@ -247,6 +284,7 @@ fn a_saved_scene_opens_as_it_was_left() {
     let mut window = window(SIZE, Backend::Cpu);
     drag(&mut window, pos2(100.0, 150.0), vec2(40.0, 15.0), PointerButton::Primary, Modifiers::NONE);
     window.state_mut().looks[0].skin.preset = Some("marble".to_owned());
+    window.state_mut().looks[0].skin.thickness = 0.5;
     window.state_mut().looks[0].lights[0].turn_degrees = 40.0;
     window.state_mut().looks[0].pose.wave = Some(Wave::sideways(6.0, 90.0, 1.0));
     settle(&mut window);
@@ -258,6 +296,7 @@ fn a_saved_scene_opens_as_it_was_left() {
     let told = message(&mut window);
     settle(&mut window);
     assert_eq!(window.state().original.pose.wave.map(|wave| wave.amplitude_mm), Some(6.0), "{told}");
+    assert_eq!(window.state().scene.objects[0].material.thickness_scale, 0.5, "{told}");
     let after = pixels(&window);
     let off = before.iter().zip(&after).filter(|(a, b)| a.abs_diff(**b) > 2).count();
     // Numbers are rounded to text and back; a pixel at the silhouette may fall to the other side.

@@ -32,7 +32,7 @@ impl OpennessPass {
         let look = Blueprint {
             name: "openness",
             source: shaders::SHADOW,
-            entries: ["see_from_light", "map_surface"],
+            entries: ["see_depth", "map_surface"],
             targets: &[],
             additive: false,
             depth: true,

@@ -32,12 +32,22 @@ fn see_from_light(@builtin(vertex_index) index: u32) -> Seen {
     let vertex = vertices[triangle[index % 3u]];
     let map = map_of(drawn.light);
     let axes_mm = in_map_axes(map, vertex.position_mm);
+    return Seen(on_map(map, axes_mm), axes_mm.z, vec2f(vertex.u, vertex.v), triangle.w);
+}
+
+/// For maps of nothing but depth.
+@vertex
+fn see_depth(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    let map = map_of(drawn.light);
+    return on_map(map, in_map_axes(map, vertices[triangles[index / 3u][index % 3u]].position_mm));
+}
+
+fn on_map(map: LightMap, axes_mm: vec3f) -> vec4f {
     let depth = (axes_mm.z - map.near_mm) / (map.far_mm - map.near_mm);
-    var position = vec4f(axes_mm.xy / map.half_width, depth, 1.0);
-    if !map.directional {
-        position = vec4f(axes_mm.xy / map.half_width, depth * map.far_mm, axes_mm.z);
+    if map.directional {
+        return vec4f(axes_mm.xy / map.half_width, depth, 1.0);
     }
-    return Seen(position, axes_mm.z, vec2f(vertex.u, vertex.v), triangle.w);
+    return vec4f(axes_mm.xy / map.half_width, depth * map.far_mm, axes_mm.z);
 }
 
 @fragment

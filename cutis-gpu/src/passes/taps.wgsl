@@ -37,10 +37,10 @@ const LEFT_OUT: f32 = 0.005;
 /// Variance in texel² below which a sampled Gaussian has noticeably less of it than its formula says.
 const UNDERSAMPLED_TEXEL2: f32 = 0.6;
 
-/// The stretch so many texels away.
-fn stretch_at(half_texel: vec2i, away: f32) -> vec2f {
+/// The stretch so many texels away, but not beyond the chart, which goes on for `reach` texels.
+fn stretch_at(half_texel: vec2i, away: f32, reach: f32) -> vec2f {
     let step = select(vec2i(1, 0), vec2i(0, 1), widening.axis == 1u);
-    return textureLoad(stretch_map, half_texel + i32(round(0.5 * away)) * step, 0).xy;
+    return textureLoad(stretch_map, half_texel + i32(round(0.5 * clamp(away, -reach, reach))) * step, 0).xy;
 }
 
 fn discrete_variance(variance_texel2: f32) -> f32 {
@@ -54,12 +54,12 @@ fn discrete_variance(variance_texel2: f32) -> f32 {
 
 /// Distances in texels of three taps on one side, the same distance of surface apart.
 fn distances(half_texel: vec2i, texel_mm: f32, spacing: f32, reach: f32, side: f32) -> vec3f {
-    let ahead = min(vec3f(0.5, 1.5, 2.5) * spacing, vec3f(reach)) * side;
+    let ahead = vec3f(0.5, 1.5, 2.5) * spacing * side;
     let axis = widening.axis;
-    let a = spacing * texel_mm / stretch_at(half_texel, ahead.x)[axis];
-    let b = a + spacing * texel_mm / stretch_at(half_texel, ahead.y)[axis];
-    let c = b + spacing * texel_mm / stretch_at(half_texel, ahead.z)[axis];
-    return min(vec3f(a, b, c), vec3f(reach));
+    let a = spacing * texel_mm / stretch_at(half_texel, ahead.x, reach)[axis];
+    let b = a + spacing * texel_mm / stretch_at(half_texel, ahead.y, reach)[axis];
+    let c = b + spacing * texel_mm / stretch_at(half_texel, ahead.z, reach)[axis];
+    return vec3f(a, b, c);
 }
 
 /// The variance whose Gaussian, sampled at whole texels, has the variance that is asked for.
@@ -83,9 +83,8 @@ fn lay_taps(@builtin(position) position: vec4f) -> Laid {
     if own.x == NO_CHART {
         return Laid(vec2f(0.0), vec2f(0.0));
     }
-    // Of half texels, of which none beyond may be read.
     let reach = 2.0 * f32((own.y >> (8u * widening.axis)) & 255u);
-    let texel_mm = stretch_at(half_texel, 0.0)[widening.axis];
+    let texel_mm = stretch_at(half_texel, 0.0, reach)[widening.axis];
     let texel2_mm2 = texel_mm * texel_mm;
     let wanted = discrete_variance(widening.to_mm2 / texel2_mm2) - discrete_variance(widening.from_mm2 / texel2_mm2)
         - widening.saved_texel2;
@@ -93,10 +92,10 @@ fn lay_taps(@builtin(position) position: vec4f) -> Laid {
     let near = distances(half_texel, texel_mm, spacing, reach, 1.0);
     let far = distances(half_texel, texel_mm, spacing, reach, -1.0);
     let weights = widening.weights;
-    let stretch = stretch_at(half_texel, 0.0) * weights.x
-        + (stretch_at(half_texel, near.x) + stretch_at(half_texel, -far.x)) * weights.y
-        + (stretch_at(half_texel, near.y) + stretch_at(half_texel, -far.y)) * weights.z
-        + (stretch_at(half_texel, near.z) + stretch_at(half_texel, -far.z)) * weights.w;
+    let stretch = stretch_at(half_texel, 0.0, reach) * weights.x
+        + (stretch_at(half_texel, near.x, reach) + stretch_at(half_texel, -far.x, reach)) * weights.y
+        + (stretch_at(half_texel, near.y, reach) + stretch_at(half_texel, -far.y, reach)) * weights.z
+        + (stretch_at(half_texel, near.z, reach) + stretch_at(half_texel, -far.z, reach)) * weights.w;
     // The variance of the taps on either side, which lie evenly on the surface and not in the texture.
     let sides = 2.0 * vec2f(dot(weights.yzw, near * near), dot(weights.yzw, far * far));
     return Laid(vec2f(sampled_variance(sides.x), sampled_variance(sides.y)), stretch);

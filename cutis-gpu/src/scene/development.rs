@@ -32,6 +32,8 @@ pub struct Development {
     /// Side of a cell of the glow, pixels; none without glow.
     cell: Option<usize>,
     reader: Reader,
+    /// Bytes of its maps.
+    pub memory_bytes: u64,
 }
 
 /// Steps of a development at most.
@@ -40,6 +42,7 @@ pub const MAX_STEPS: usize = 4;
 impl Development {
     /// Of a picture.
     pub fn new(gpu: &Gpu, passes: &Passes, picture: &Map, how: Developing) -> Self {
+        let gpu = &gpu.counting();
         let size = [picture.width(), picture.height()];
         let spread = spread(&how.film, size[1]);
         let numbers = gpu.uniform("film", &GpuFilm::new(&how.film, spread.as_ref(), how.behind));
@@ -55,7 +58,7 @@ impl Development {
         let light = (picture, glow.as_ref().map(|[first, _]| first));
         steps.push(passes.tone_map.step(gpu, &passes.samplers, &numbers, light, &codes));
         let (cell, reader) = (spread.map(|spread| spread.cell), Reader::new(gpu, &codes));
-        Self { steps, how, codes, numbers, cell, reader }
+        Self { steps, how, codes, numbers, cell, reader, memory_bytes: gpu.asked_bytes() }
     }
 
     /// Whether another film only needs other numbers.

@@ -210,7 +210,7 @@ impl GpuScene {
 
     /// Bytes of all textures and buffers that it keeps, those of single frames left out.
     pub fn memory_bytes(&self) -> u64 {
-        self.memory_bytes
+        self.memory_bytes + self.development.as_ref().map_or(0, |development| development.memory_bytes)
     }
 
     /// What every step of a frame costs at least, while the geometry stays.

@@ -112,6 +112,11 @@ impl Gpu {
         self.buffer(label, bytes, wgpu::BufferUsages::STORAGE)
     }
 
+    /// A buffer of the numbers of vertices.
+    pub fn indices(&self, label: &str, values: &[u32]) -> wgpu::Buffer {
+        self.buffer(label, bytemuck::cast_slice(values), wgpu::BufferUsages::INDEX)
+    }
+
     fn buffer(&self, label: &str, contents: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
         let size = contents.len() as u64;
         self.count(size);

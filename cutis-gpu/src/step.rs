@@ -8,6 +8,7 @@ use crate::timing::Stamps;
 const MAX_TARGETS: usize = 3;
 
 /// One step of a frame.
+#[expect(clippy::large_enum_variant, reason = "nearly all steps are draws")]
 #[derive(Debug)]
 pub enum Step {
     /// Something is drawn.
@@ -29,6 +30,8 @@ pub struct Draw {
     pub depth: Option<(View, bool)>,
     /// What the targets hold before; none: what they held.
     pub clear: Option<wgpu::Color>,
+    /// Numbers of the vertices, 32 bits each; none: they are counted.
+    pub indices: Option<wgpu::Buffer>,
     /// Vertices of an instance.
     pub vertices: u32,
     /// Instances.
@@ -93,7 +96,13 @@ impl Draw {
         for (group, bound) in (0..).zip(&self.bind_groups) {
             pass.set_bind_group(group, &bound.raw, &[]);
         }
-        pass.draw(0..self.vertices, 0..self.instances);
+        match &self.indices {
+            Some(indices) => {
+                pass.set_index_buffer(indices.slice(..), wgpu::IndexFormat::Uint32);
+                pass.draw_indexed(0..self.vertices, 0, 0..self.instances);
+            }
+            None => pass.draw(0..self.vertices, 0..self.instances),
+        }
     }
 }
 

@@ -136,6 +136,7 @@ fn over_picture(gpu: &Gpu, pipeline: &Pipeline, bound: &[(u32, Bound)], picture:
         targets: vec![picture.view().clone()],
         depth: None,
         clear: None,
+        indices: None,
         vertices: 3,
         instances: 1,
     })
@@ -171,6 +172,7 @@ fn over_tiles(
         depth: None,
         clear: clear.then_some(wgpu::Color::TRANSPARENT),
         // Two triangles for every run of tiles.
+        indices: None,
         vertices: 6,
         instances: runs,
     })

@@ -66,7 +66,6 @@ impl OpennessPass {
         let numbers = gpu.uniform("drawn", &drawn);
         let bound = [
             (0, Bound::Buffer(&geometry.vertices)),
-            (1, Bound::Buffer(&geometry.triangles)),
             (2, Bound::Buffer(directions)),
             (3, Bound::Buffer(&numbers)),
         ];
@@ -76,6 +75,7 @@ impl OpennessPass {
             targets: Vec::new(),
             depth: Some((depth.clone(), drawn.object == 0)),
             clear: None,
+            indices: Some(geometry.indices.clone()),
             vertices: 3 * geometry.triangle_count,
             instances: 1,
         })

@@ -150,6 +150,7 @@ impl ResolvePass {
             targets: Vec::new(),
             depth: Some((depth.view().clone(), first)),
             clear: None,
+            indices: None,
             vertices: 3 * geometry.triangle_count,
             instances: 1,
         })
@@ -203,6 +204,7 @@ impl ResolvePass {
             targets: vec![samples.view().clone()],
             depth: None,
             clear: None,
+            indices: None,
             vertices: 3,
             instances: 1,
         })
@@ -251,6 +253,7 @@ fn draw(
         targets: vec![canvas.samples.view().clone()],
         depth: Some((canvas.depth.view().clone(), clear_depth)),
         clear: canvas.clear.filter(|_| canvas.first),
+        indices: None,
         vertices: 3 * inputs.geometry.triangle_count,
         instances: 1,
     })

@@ -95,6 +95,7 @@ impl ShadowPass {
             ],
             depth: Some((maps.depth_buffer.view().clone(), first)),
             clear: first.then_some(wgpu::Color { r: NOTHING_MM, g: 0.0, b: 0.0, a: 0.0 }),
+            indices: None,
             vertices: 3 * geometry.triangle_count,
             instances: 1,
         })

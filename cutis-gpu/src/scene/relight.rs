@@ -22,7 +22,9 @@ impl GpuScene {
         {
             return false;
         }
-        self.posing.set_lights(gpu, &self.shared, scene, lights);
+        if !self.posing.set_lights(gpu, &self.shared, scene, lights) {
+            return false;
+        }
         if let Some(environment) = &scene.environment {
             self.shared.environment.set(gpu, environment);
         }

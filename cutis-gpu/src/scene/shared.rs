@@ -69,7 +69,7 @@ impl Shared {
             camera: gpu.uniform("camera", &GpuCamera::of_scene(scene, aspect)),
             shadow_samples: settings.shadow_samples.max(MIN_SHADOW_SAMPLES),
             warnings: warnings(&layers),
-            lights: gpu.storage("lights", &lights),
+            lights: gpu.storage("lights", if lights.is_empty() { &[GpuLight::DARK] } else { &lights }),
             layers,
         })
     }

@@ -171,7 +171,10 @@ fn maps(viewer: &mut Viewer, ui: &mut Ui) {
 
 /// A texture with its name, and the value under the pointer. Tells whether it was clicked.
 fn tile_of(ui: &mut Ui, side: &Side, tile: &Tile) -> bool {
-    let name = format!("{} {}", tile.aov, unit(tile.aov));
+    let name = match unit(tile.aov) {
+        "" => tile.aov.to_string(),
+        unit => format!("{} [{unit}]", tile.aov),
+    };
     let image = Image::new(SizedTexture::new(tile.texture.id(), Vec2::splat(TILE)));
     let response = ui.add(image.sense(Sense::click()).alt_text(name.clone()));
     ui.label(name);

@@ -73,7 +73,7 @@ pub fn unit(aov: Aov) -> &'static str {
         Aov::Stretch => "mm per texel",
         Aov::Thickness => "mm",
         Aov::Specular | Aov::Transmission | Aov::Diffuse | Aov::StandardError => "W/(m² sr)",
-        Aov::Seams => "of the mean light at seams; 1 at a seam",
+        Aov::Seams => "of the mean light",
         Aov::Samples => "shaded, taken",
         Aov::ShadowSamples => "places of lights",
         Aov::Normal | Aov::Albedo | Aov::Charts => "",

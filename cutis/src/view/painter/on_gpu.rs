@@ -30,7 +30,15 @@ impl Devices {
             Backend::Gpu => (&mut self.any, Adapters::Any),
             _ => (&mut self.hardware, Adapters::Hardware),
         };
-        open.get_or_insert_with(|| GpuRenderer::new(adapters).map(Arc::new)).clone()
+        if let Some(open) = open {
+            return open.clone();
+        }
+        let opened = GpuRenderer::new(adapters).map(Arc::new);
+        // What else stands in the way may pass, as when a driver is restarted.
+        if matches!(opened, Ok(_) | Err(GpuError::NoAdapter { .. })) {
+            *open = Some(opened.clone());
+        }
+        opened
     }
 
     /// With a renderer that passes for one on a graphics processor.

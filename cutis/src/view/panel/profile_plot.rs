@@ -2,7 +2,7 @@
 
 use cutis_render::prepare::Kernel;
 use eframe::egui::{Color32, Ui};
-use egui_plot::{Legend, Line, Plot, PlotPoints, uniform_grid_spacer};
+use egui_plot::{GridInput, Legend, Line, Plot, PlotPoints, uniform_grid_spacer};
 use std::f32::consts::TAU;
 
 /// Points of a curve.
@@ -22,7 +22,8 @@ pub fn show(ui: &mut Ui, kernel: &Kernel) {
     Plot::new("profile")
         .height(150.0)
         .legend(Legend::default())
-        .x_grid_spacer(uniform_grid_spacer(|_| [10.0, 1.0, 0.5]))
+        .x_grid_spacer(uniform_grid_spacer(steps))
+        .y_grid_spacer(uniform_grid_spacer(steps))
         .x_axis_label("r [mm]")
         .y_axis_label("2πr R(r) [1/mm]")
         .allow_scroll(false)
@@ -42,6 +43,14 @@ pub fn show(ui: &mut Ui, kernel: &Kernel) {
                 plot.line(Line::new(name, points).color(colour));
             }
         });
+}
+
+/// Distances of lines: two or more of the widest with their numbers, whatever is shown.
+fn steps(shown: GridInput) -> [f64; 3] {
+    let half = 0.5 * (shown.bounds.1 - shown.bounds.0).max(1e-9);
+    let power = 10f64.powf(half.log10().floor());
+    let round = [5.0, 2.0, 1.0].into_iter().find(|round| round * power <= half).unwrap_or(1.0) * power;
+    [round, 0.5 * round, 0.1 * round]
 }
 
 /// Light that leaves between r and r + dr, over dr, 1/mm.

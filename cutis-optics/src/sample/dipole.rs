@@ -36,8 +36,9 @@ struct Source {
 impl Source {
     /// w at a radius; r²/(1 + sqrt(1 + r²)) in units of z, which does not cancel.
     fn excess_at(&self, r_mm: f64) -> f64 {
-        let ratio = r_mm / self.depth_mm;
-        // Where its square has no end, 1 + w = r/z.
+        // Farther than any f32 there is nothing, and at infinity 0 times infinity.
+        let ratio = (r_mm / self.depth_mm).min(1e60);
+        // Far out 1 + w = r/z.
         if ratio > 1e8 { ratio } else { ratio * ratio / (1.0 + ratio.hypot(1.0)) }
     }
 
@@ -79,8 +80,7 @@ impl DipoleSampler {
         let of_chosen = |of: fn(&Source) -> f64| {
             is_real.select(f32x8::splat(of(real) as f32), f32x8::splat(of(mirrored) as f32))
         };
-        let odds =
-            odds(xi, is_real.select(f32x8::ZERO, share_real), is_real.select(share_real, f32x8::ONE));
+        let odds = odds(xi, is_real.select(f32x8::ZERO, share_real), is_real.select(share_real, f32x8::ONE));
         let w = excess(of_chosen(|s| s.sigma_tr_depth), odds);
         of_chosen(|s| s.depth_mm) * (w * (w + f32x8::splat(2.0))).sqrt()
     }
@@ -139,9 +139,11 @@ mod tests {
 
     /// Every multiple of 2^-24 in [0, 1), and floats down to the smallest: eight at a time.
     fn all_xi() -> impl Iterator<Item = f32x8> {
-        let even = (0..1u32 << 21)
-            .map(|i| f32x8::new(core::array::from_fn(|lane| (8 * i + lane as u32) as f32 * 0.5 * f32::EPSILON)));
-        let tiny = (0..149).map(|e| f32x8::new(core::array::from_fn(|i| 0.1 * (i + 1) as f32 * 2f32.powi(-e))));
+        let even = (0..1u32 << 21).map(|i| {
+            f32x8::new(core::array::from_fn(|lane| (8 * i + lane as u32) as f32 * 0.5 * f32::EPSILON))
+        });
+        let tiny =
+            (0..149).map(|e| f32x8::new(core::array::from_fn(|i| 0.1 * (i + 1) as f32 * 2f32.powi(-e))));
         even.chain(tiny)
     }
 
@@ -183,7 +185,9 @@ mod tests {
 
     #[test]
     fn the_ends_of_all_media_are_numbers() {
-        for (sigma_a, sigma_s) in [(0.0, 1e9), (1e9, 1e9), (1e9, 1e-9), (0.0, 1e-9), (1e-9, 1e-9), (1e-9, 1.0)] {
+        for (sigma_a, sigma_s) in
+            [(0.0, 1e9), (1e9, 1e9), (1e9, 1e-9), (0.0, 1e-9), (1e-9, 1e-9), (1e-9, 1.0)]
+        {
             for n in [0.5, 1.0, 1.4, 3.0] {
                 let medium = crate::Medium::new(sigma_a, sigma_s, n).unwrap();
                 let sampler = DipoleSampler::new(&Dipole::new(&medium).unwrap());

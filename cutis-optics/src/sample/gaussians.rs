@@ -21,7 +21,8 @@ pub struct GaussianSampler {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Choice {
     to: f32,
-    twice_variance_mm2: f32,
+    /// sqrt(2 v): its square would leave f32 for small `xi`.
+    spread_mm: f32,
 }
 
 impl GaussianSampler {
@@ -48,7 +49,7 @@ impl GaussianSampler {
         let mut choices: Vec<Choice> = Vec::with_capacity(sum.terms.len());
         for term in &sum.terms {
             to += term.weight;
-            choices.push(Choice { to: to as f32, twice_variance_mm2: (2.0 * term.variance_mm2) as f32 });
+            choices.push(Choice { to: to as f32, spread_mm: (2.0 * term.variance_mm2).sqrt() as f32 });
         }
         if let Some(last) = choices.last_mut() {
             last.to = 1.0; // Whatever the sum was rounded to.
@@ -61,15 +62,14 @@ impl GaussianSampler {
         let xi = unit(xi);
         let first = &self.choices[0];
         let (mut from, mut to) = (f32x8::ZERO, f32x8::splat(first.to));
-        let mut twice_variance_mm2 = f32x8::splat(first.twice_variance_mm2);
+        let mut spread_mm = f32x8::splat(first.spread_mm);
         for choice in &self.choices[1..] {
             let before = xi.simd_lt(to);
             from = before.select(from, to);
-            twice_variance_mm2 =
-                before.select(twice_variance_mm2, f32x8::splat(choice.twice_variance_mm2));
+            spread_mm = before.select(spread_mm, f32x8::splat(choice.spread_mm));
             to = before.select(to, f32x8::splat(choice.to));
         }
-        (twice_variance_mm2 * odds(xi, from, to).ln_1p()).sqrt()
+        spread_mm * odds(xi, from, to).ln_1p().sqrt()
     }
 }
 

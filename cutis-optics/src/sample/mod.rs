@@ -48,7 +48,9 @@ pub trait RadialSampler {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SamplerError {
     /// A density has no negative part. Fits by `energy` have none.
-    #[error("a Gaussian of weight {weight} cannot be sampled; fit with the method energy, which keeps weights above 0")]
+    #[error(
+        "a Gaussian of weight {weight} cannot be sampled; fit with the method energy, which keeps weights above 0"
+    )]
     NegativeWeight {
         /// The weight.
         weight: f64,
@@ -66,7 +68,9 @@ pub enum SamplerError {
         total: f64,
     },
     /// Not a length.
-    #[error("the mean free path of a profile to sample must lie in 1e-12 to 1e12 mm, got {mean_free_path_mm} mm")]
+    #[error(
+        "the mean free path of a profile to sample must lie in 1e-12 to 1e12 mm, got {mean_free_path_mm} mm"
+    )]
     MeanFreePath {
         /// What was given, mm.
         mean_free_path_mm: f64,

@@ -15,7 +15,8 @@ const ERRORS: f64 = 3.0;
 /// Numbers in [0, 1) with 24 bits, by SplitMix64 as in `simulate`, written apart from it.
 fn uniforms(seed: u64, count: usize) -> Vec<f32> {
     let number = |i: u64| {
-        let mut z = seed.wrapping_mul(0xD1B5_4A32_D192_ED03).wrapping_add(i.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        let mut z =
+            seed.wrapping_mul(0xD1B5_4A32_D192_ED03).wrapping_add(i.wrapping_mul(0x9E37_79B9_7F4A_7C15));
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
         (((z ^ (z >> 31)) >> 40) as f32) * (1.0 / 16_777_216.0)
@@ -48,20 +49,32 @@ fn gaussians(dipole: &Dipole) -> (GaussianSum, GaussianSampler) {
 }
 
 /// Edges of rings by half octaves around a length; light within a ring by Simpson's rule over ln r.
-fn shares(profile: &dyn Profile, total: f64, length_mm: f64) -> (Vec<f64>, Vec<f64>) {
+fn shares(profile: &dyn Profile, total: f64, length_mm: f64, steps: usize) -> (Vec<f64>, Vec<f64>) {
     let edges_mm: Vec<f64> = (-14..=16).map(|i| length_mm * 2f64.powf(0.5 * f64::from(i))).collect();
-    let ring = |from: f64, to: f64, steps: usize| {
+    let ring = |from: f64, to: f64| {
         let light = |t: f64| TAU * profile.at_mm(t.exp()) * (2.0 * t).exp();
         simpson(from.ln(), to.ln(), steps, light) / total
     };
-    let mut shares = vec![ring(1e-6 * length_mm, edges_mm[0], 64)];
-    shares.extend(edges_mm.windows(2).map(|pair| ring(pair[0], pair[1], 16)));
+    let mut shares = vec![ring(1e-4 * length_mm, edges_mm[0])];
+    shares.extend(edges_mm.windows(2).map(|pair| ring(pair[0], pair[1])));
     shares.push(1.0 - shares.iter().sum::<f64>());
     (edges_mm, shares)
 }
 
-fn follows(sampler: &dyn RadialSampler, profile: &dyn Profile, total: f64, length_mm: f64, seed: u64) {
-    let (edges_mm, shares) = shares(profile, total, length_mm);
+/// Fails if samples do not follow a profile, whose light within rings takes `steps` of Simpson's rule each.
+fn follows(sampler: &dyn RadialSampler, profile: &dyn Profile, length_mm: f64, steps: usize, seed: u64) {
+    follows_total(sampler, profile, profile.total(), length_mm, steps, seed);
+}
+
+fn follows_total(
+    sampler: &dyn RadialSampler,
+    profile: &dyn Profile,
+    total: f64,
+    length_mm: f64,
+    steps: usize,
+    seed: u64,
+) {
+    let (edges_mm, shares) = shares(profile, total, length_mm, steps);
     let mut counts = vec![0u64; shares.len()];
     for r_mm in drawn(sampler, seed, 100_000) {
         counts[edges_mm.partition_point(|&edge| edge <= f64::from(r_mm))] += 1;
@@ -73,11 +86,11 @@ fn follows(sampler: &dyn RadialSampler, profile: &dyn Profile, total: f64, lengt
 fn samples_follow_the_profiles_of_all_measured_media() {
     // 36 media, three samplers: 108 tests at 1 in 100,000 each would fail together once in 900 honest seeds.
     for (seed, (_, _, dipole)) in (0..).step_by(3).zip(measured()) {
-        let (total, l) = (dipole.total(), dipole.depth_real_mm());
-        follows(&DipoleSampler::new(&dipole), &dipole, total, l, seed);
-        follows(&table(&dipole), &dipole, total, l, seed + 1);
+        let l = dipole.depth_real_mm();
+        follows(&DipoleSampler::new(&dipole), &dipole, l, 16, seed);
+        follows(&table(&dipole), &dipole, l, 16, seed + 1);
         let (sum, sampler) = gaussians(&dipole);
-        follows(&sampler, &sum, sum.energy(), l, seed + 2);
+        follows(&sampler, &sum, l, 16, seed + 2);
     }
 }
 
@@ -88,17 +101,25 @@ fn samples_follow_a_layered_and_a_simulated_profile() {
         thickness_mm,
     };
     let stack = Stack::in_air(&[layer(0.3, 6.0, 0.25), layer(0.1, 3.0, f64::INFINITY)]).unwrap();
-    follows(&TabulatedSampler::new(&stack, 0.16).unwrap(), &stack, stack.total(), 0.16, 1001);
+    follows(&TabulatedSampler::new(&stack, 0.16).unwrap(), &stack, 0.16, 16, 1001);
 
-    let layer =
-        Layer { sigma_a_per_mm: 0.1, sigma_s_per_mm: 1.0, g: 0.0, refractive_index: 1.4, thickness_mm: f64::INFINITY };
-    let grid = Grid { rings: Rings::even(0.1, 60).unwrap(), depth_step_mm: 1.0, depth_bins: 1, cosine_bins: 1 };
+    let layer = Layer {
+        sigma_a_per_mm: 0.1,
+        sigma_s_per_mm: 1.0,
+        g: 0.0,
+        refractive_index: 1.4,
+        thickness_mm: f64::INFINITY,
+    };
+    let grid =
+        Grid { rings: Rings::even(0.1, 60).unwrap(), depth_step_mm: 1.0, depth_bins: 1, cosine_bins: 1 };
     let slab = LayeredSlab::in_air(vec![layer]).unwrap();
     let rings = RingProfile::from_estimates(&Simulation { slab, grid, seed: 1 }.run(20_480));
-    // Between middles of rings it is a power of the radius: its own integral is not quite that of the rings.
+    // Between middles of rings it is a power of the radius: its own integral is not quite that of the rings. It has kinks,
+    // and ends at 6 mm.
     let light = |t: f64| TAU * rings.at_mm(t.exp()) * (2.0 * t).exp();
-    let total = simpson(1e-6f64.ln(), 6f64.ln(), 20_000, light);
-    follows(&TabulatedSampler::new(&rings, 1.0 / 1.1).unwrap(), &rings, total, 0.03, 1002);
+    let total = simpson(1e-6_f64.ln(), 6_f64.ln(), 200_000, light);
+    let sampler = TabulatedSampler::new(&rings, 1.0 / 1.1).unwrap();
+    follows_total(&sampler, &rings, total, 6.0 / 256.0, 2000, 1002);
 }
 
 /// ∫ p 2 pi r dr over ln r.
@@ -179,7 +200,10 @@ fn tables_are_inverted_to_a_hundred_thousandth_of_the_mean_free_path() {
             let digit = 1.0 / 16_777_216.0 * dipole.total() / (TAU * exact * dipole.at_mm(exact));
             let noise = 3.0 * digit + 4.0 * f64::from(f32::EPSILON) * exact;
             worst = worst.max(((r - exact).abs() - noise) / l / (1.0 + 0.05 * exact / l));
-            assert!((r - exact).abs() < noise + 1e-5 * l * (0.5 + 0.025 * exact / l), "{name}, xi {xi}: {r} for {exact}");
+            assert!(
+                (r - exact).abs() < noise + 1e-5 * l * (0.5 + 0.025 * exact / l),
+                "{name}, xi {xi}: {r} for {exact}"
+            );
         }
     }
     eprintln!("tables: {worst:.1e} mean free paths beyond rounding");
@@ -212,19 +236,23 @@ fn constant_irradiance_over_the_plane_leaves_as_much_as_the_total() {
     for (name, channels) in MEASURED_MEDIA {
         let dipoles = channels.map(|m| Dipole::new(&m).unwrap());
         // Drawn from the channel that spreads farthest, so that the others' weights have a bound.
-        let widest = dipoles.iter().min_by(|a, b| a.sigma_tr_per_mm().total_cmp(&b.sigma_tr_per_mm())).unwrap();
+        let widest =
+            dipoles.iter().min_by(|a, b| a.sigma_tr_per_mm().total_cmp(&b.sigma_tr_per_mm())).unwrap();
         let samplers: [&dyn RadialSampler; 2] = [&DipoleSampler::new(widest), &table(widest)];
         for (seed, sampler) in (40..).zip(samplers) {
             let radii_mm = drawn(sampler, seed, 50_000);
             for (i, dipole) in dipoles.iter().enumerate() {
-                let weight =
-                    |&r: &f32| dipole.at_mm(f64::from(r)) / f64::from(sampler.pdf_per_mm2(r));
+                let weight = |&r: &f32| dipole.at_mm(f64::from(r)) / f64::from(sampler.pdf_per_mm2(r));
                 let (got, error) = mean(radii_mm.iter().map(weight));
                 // The density is rounded to f32, which has no noise.
                 let rounding = f64::from(f32::EPSILON) * dipole.total();
                 let off = (got - dipole.total()).abs();
                 farthest = farthest.max(off / (error + rounding));
-                assert!(off < ERRORS * error + rounding, "{name} {i}: {got} ± {error} for {}", dipole.total());
+                assert!(
+                    off < ERRORS * error + rounding,
+                    "{name} {i}: {got} ± {error} for {}",
+                    dipole.total()
+                );
             }
         }
     }
@@ -233,7 +261,8 @@ fn constant_irradiance_over_the_plane_leaves_as_much_as_the_total() {
 
 /// Exitance at a distance from the edge of a lit half-plane, per irradiance: 1/2 F(0) + 1/pi ∫ F(k) sin(k d)/k dk.
 fn edge_profile(profile: &dyn Profile, d_mm: f64, k_end_per_mm: f64) -> f64 {
-    let wave = |k: f64| if k == 0.0 { d_mm * profile.total() } else { profile.spectrum(k) * (k * d_mm).sin() / k };
+    let wave =
+        |k: f64| if k == 0.0 { d_mm * profile.total() } else { profile.spectrum(k) * (k * d_mm).sin() / k };
     0.5 * profile.total() + simpson(0.0, k_end_per_mm, 20_000, wave) / PI
 }
 
@@ -247,7 +276,9 @@ fn edge_estimate(sampler: &dyn RadialSampler, d_mm: f64, seed: u64) -> (f64, f64
 
 #[test]
 fn light_leaks_under_a_shadow_s_edge_as_it_should() {
-    for (name, medium, dipole) in measured().filter(|(name, ..)| name.starts_with("skin") || name.starts_with("marble")) {
+    for (name, medium, dipole) in
+        measured().filter(|(name, ..)| name.starts_with("skin") || name.starts_with("marble"))
+    {
         let l = medium.transport_mean_free_path_mm();
         let (sum, by_gaussians) = gaussians(&dipole);
         for (seed, d) in (300u64..).step_by(7).zip([-5.0, -1.0, -0.1, 0.0, 0.3, 2.0].map(|d| d * l)) {
@@ -255,12 +286,19 @@ fn light_leaks_under_a_shadow_s_edge_as_it_should() {
             let expected = edge_profile(&dipole, d, 30.0 / l) / dipole.total();
             for sampler in [&DipoleSampler::new(&dipole) as &dyn RadialSampler, &table(&dipole)] {
                 let (got, error) = edge_estimate(sampler, d, seed);
-                assert!((got - expected).abs() < ERRORS * error, "{name}, {d} mm: {got} ± {error} for {expected}");
+                assert!(
+                    (got - expected).abs() < ERRORS * error,
+                    "{name}, {d} mm: {got} ± {error} for {expected}"
+                );
             }
-            let part = |g: &crate::Gaussian| 0.5 * g.weight * libm::erfc(-d / (SQRT_2 * g.variance_mm2.sqrt()));
+            let part =
+                |g: &crate::Gaussian| 0.5 * g.weight * libm::erfc(-d / (SQRT_2 * g.variance_mm2.sqrt()));
             let expected = sum.terms.iter().map(part).sum::<f64>() / sum.energy();
             let (got, error) = edge_estimate(&by_gaussians, d, seed + 3);
-            assert!((got - expected).abs() < ERRORS * error, "{name}, {d} mm: {got} ± {error} for {expected}");
+            assert!(
+                (got - expected).abs() < ERRORS * error,
+                "{name}, {d} mm: {got} ± {error} for {expected}"
+            );
         }
     }
 }

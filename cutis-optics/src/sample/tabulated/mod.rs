@@ -81,7 +81,8 @@ impl TabulatedSampler {
 
     /// y and dr/dy at a radius; none where nothing is.
     fn found(&self, radius_mm: f64) -> Option<(f64, f64)> {
-        let piece = self.cubics_mm.partition_point(|cubic| f64::from(cubic[0]) <= radius_mm).saturating_sub(1);
+        let piece =
+            self.cubics_mm.partition_point(|cubic| f64::from(cubic[0]) <= radius_mm).saturating_sub(1);
         let from = f64::from(self.y_from[piece]);
         let width = f64::from(self.y_from[piece + 1].min(self.y_to)) - from;
         let [a, b, c, e] = self.cubics_mm[piece].map(f64::from);

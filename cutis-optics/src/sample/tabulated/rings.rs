@@ -11,14 +11,17 @@ use core::f64::consts::TAU;
 use gauss_quad::GaussLegendre;
 use std::sync::LazyLock;
 
-/// Error of the radius that is let pass: this part of the mean free path …
-pub(super) const ERROR_OF_MEAN_FREE_PATH: f64 = 5e-6;
+/// Error of the radius that is let pass in the middle of a ring, half of what is promised anywhere in it: this part of the mean free path …
+pub(super) const ERROR_OF_MEAN_FREE_PATH: f64 = 2e-6;
 /// … and this of the radius, a fraction of what the last digits of `xi` mean there.
-pub(super) const ERROR_OF_RADIUS: f64 = 2.5e-7;
+pub(super) const ERROR_OF_RADIUS: f64 = 1e-7;
 /// Share beyond the outermost edge that no `xi` in f32 reaches: half of its last digit, and half of that.
 const OUT_OF_REACH: f64 = 1.0 / 67_108_864.0;
 /// Part of the lesser side (within or beyond) by which the light of a ring may differ from that of its halves.
-const QUADRATURE_ERROR: f64 = 1e-8;
+const QUADRATURE_ERROR: f64 = 1e-7;
+/// Share of all light that half of the last digit of `xi` means: what is finer, as the rounding errors of a numeric profile
+/// far out, is not worth a halving.
+const HALF_A_DIGIT: f64 = 1.0 / 33_554_432.0;
 /// Halvings at most: a kink of the profile is met to this power of 2 of its ring.
 const HALVINGS: usize = 16;
 /// The innermost ring, in mean free paths: a tenth of the tolerance.
@@ -120,12 +123,17 @@ pub(super) fn pieces(profile: &dyn Profile, mean_free_path_mm: f64) -> Vec<Piece
         if good.iter().all(|&good| good) {
             break;
         }
-        let parts = |(ring, good): (&Ring, bool)| if good { vec![*ring] } else { ring.halved(profile).to_vec() };
+        let parts =
+            |(ring, good): (&Ring, bool)| if good { vec![*ring] } else { ring.halved(profile).to_vec() };
         rings = rings.iter().zip(good).flat_map(parts).collect();
     }
     let edges = edges(profile, &rings);
     // Rings without light, and those out of reach, have no width in y.
-    edges.windows(2).filter(|pair| pair[1].y > pair[0].y).map(|pair| Piece::between(&pair[0], &pair[1])).collect()
+    edges
+        .windows(2)
+        .filter(|pair| pair[1].y > pair[0].y)
+        .map(|pair| Piece::between(&pair[0], &pair[1]))
+        .collect()
 }
 
 impl Ring {
@@ -138,16 +146,17 @@ impl Ring {
         let y = y_of(from.within + self.halves[0], to.beyond + self.halves[1]);
         let off_mm = (Piece::between(from, to).radius_mm(y) - middle_mm).abs();
         let lesser = (from.within + self.light()).min(to.beyond + self.light());
-        off_mm <= ERROR_OF_MEAN_FREE_PATH * mean_free_path_mm + ERROR_OF_RADIUS * middle_mm
-            && (self.at_once - self.light()).abs() <= QUADRATURE_ERROR * lesser
+        let digit = HALF_A_DIGIT * (from.within + from.beyond);
+        let digit_mm = digit * (self.to_mm - self.from_mm) / self.light();
+        off_mm <= ERROR_OF_MEAN_FREE_PATH * mean_free_path_mm + ERROR_OF_RADIUS * middle_mm + digit_mm
+            && (self.at_once - self.light()).abs() <= QUADRATURE_ERROR * lesser + digit
     }
 }
 
 /// Rings each as wide as all before it, out to where there is nothing more.
 fn doubling_rings(profile: &dyn Profile, mean_free_path_mm: f64) -> Vec<Ring> {
-    let ring = |from_mm: f64, to_mm: f64| {
-        Ring::between(profile, from_mm, to_mm, light(profile, from_mm, to_mm))
-    };
+    let ring =
+        |from_mm: f64, to_mm: f64| Ring::between(profile, from_mm, to_mm, light(profile, from_mm, to_mm));
     let mut rings = vec![ring(0.0, INNERMOST * mean_free_path_mm)];
     let mut sum = rings[0].light();
     // 2^70 times the innermost is 6e14 mean free paths.
@@ -183,7 +192,8 @@ fn y_of(within: f64, beyond: f64) -> f64 {
 }
 
 fn edges(profile: &dyn Profile, rings: &[Ring]) -> Vec<Edge> {
-    let mut beyond: Vec<f64> = rings.iter().rev().scan(0.0, |sum, ring| Some(add(sum, ring.light()))).collect();
+    let mut beyond: Vec<f64> =
+        rings.iter().rev().scan(0.0, |sum, ring| Some(add(sum, ring.light()))).collect();
     beyond.reverse();
     beyond.push(0.0);
     let first = Edge { r_mm: 0.0, within: 0.0, beyond: beyond[0], y: 0.0, slope_mm: f64::INFINITY };

@@ -1,9 +1,11 @@
 //! Fits of sums of Gaussians to the dipole of marble: one channel with four and eight, all three together with six.
 //! The spectrum of a stack of three layers; Monte Carlo of two published slabs on one thread.
 //! One choice of absorption for a million packets of skin that were simulated without any.
+//! Radii drawn from the dipole of marble: by Newton's steps, from its Gaussians, from a table; and making that table.
 #![allow(missing_docs, reason = "criterion's macros make public functions")]
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
+use cutis_optics::sample::{DipoleSampler, GaussianSampler, RadialSampler, TabulatedSampler};
 use cutis_optics::simulate::{Grid, Layer, LayeredSlab, PathLengths, PathSimulation, Rings, Simulation};
 use cutis_optics::{Dipole, FitMethod, Medium, Profile, Stack, TissueLayer, fit, presets, rgb_kernel};
 use std::hint::black_box;
@@ -100,5 +102,38 @@ fn absorption_afterwards(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, optics, layers, absorption_afterwards);
+/// Radii of one run: numbers and radii stay in the cache.
+const RADII: usize = 4096;
+
+fn samplers(criterion: &mut Criterion) {
+    let dipole = Dipole::new(&marble()[0]).expect("measured media are possible");
+    let sum = fit(&dipole, 6, FitMethod::Energy).expect("marble can be fitted").sum;
+    let newton = DipoleSampler::new(&dipole);
+    let gaussians = GaussianSampler::new(&sum).expect("energy fits have no negative weights");
+    let table = TabulatedSampler::new(&dipole, dipole.depth_real_mm()).expect("the dipole has light");
+    let named: [(&str, &dyn RadialSampler); 3] =
+        [("dipole, Newton", &newton), ("gaussians", &gaussians), ("table", &table)];
+    // A multiple of the golden ratio: even, and no neighbour in the same piece of the table.
+    let xi: Vec<f32> = (0..RADII).map(|i| (i as f64 * 0.618_033_988_749_894_9).fract() as f32).collect();
+    let mut radii_mm = vec![0.0; RADII];
+    let mut group = criterion.benchmark_group("samplers");
+    group.throughput(Throughput::Elements(RADII as u64));
+    for (name, sampler) in named {
+        group.bench_function(BenchmarkId::new("many at once", name), |b| {
+            b.iter(|| sampler.radii_mm(black_box(&xi), &mut radii_mm));
+        });
+        group.bench_function(BenchmarkId::new("one by one", name), |b| {
+            b.iter(|| {
+                radii_mm.iter_mut().zip(black_box(&xi)).for_each(|(r, &xi)| *r = sampler.radius_mm(xi));
+            });
+        });
+    }
+    group.throughput(Throughput::Elements(1));
+    group.bench_function(format!("a table of {} pieces", table.pieces()), |b| {
+        b.iter(|| TabulatedSampler::new(black_box(&dipole), dipole.depth_real_mm()));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, optics, layers, absorption_afterwards, samplers);
 criterion_main!(benches);

@@ -6,6 +6,8 @@
 //! variances in an [`RgbGaussianSum`]. Symbols are listed in `docs/notation.md`.
 //! Lengths in mm, coefficients in 1/mm. Everything here is f64 and pure.
 //!
+//! Renderers that gather light around a point draw radii from any of them: [`sample`].
+//!
 //! What leaves the house: [`export`] writes kernels as constants of shaders, [`translate`] says a material in the words of
 //! other renderers, and how much is lost.
 //!
@@ -42,6 +44,7 @@ pub mod presets;
 mod profile;
 mod rgb_gaussian_sum;
 mod ring_profile;
+pub mod sample;
 pub mod simulate;
 mod single_scattering;
 mod source;

@@ -1,4 +1,5 @@
-//! Slow, obvious integrals that the tests compare the closed forms with. Nothing here shares code with them.
+//! Slow, obvious integrals that the tests compare the closed forms with, and how far samples may stray from a density.
+//! Nothing here shares code with what is tested.
 
 /// Composite Simpson rule over `[from, to]`; `intervals` is even.
 pub(crate) fn simpson(from: f64, to: f64, intervals: usize, f: impl Fn(f64) -> f64) -> f64 {
@@ -24,6 +25,26 @@ pub(crate) fn hankel(k_per_mm: f64, from_mm: f64, to_mm: f64, f: impl Fn(f64) ->
         core::f64::consts::TAU * f(r) * bessel_j0(k_per_mm * r) * r * r
     };
     simpson(from_mm.ln(), to_mm.ln(), 4000, integrand)
+}
+
+/// Fails if counts stray from their shares farther than chance lets them in one of 100,000 tests.
+pub(crate) fn chi_square_is_plausible(counts: &[u64], shares: &[f64]) {
+    let total = counts.iter().sum::<u64>() as f64;
+    let (mut chi2, mut degrees) = (0.0, -1.0);
+    let mut rest = (0.0, 0.0);
+    for (&count, &share) in counts.iter().zip(shares) {
+        // Bins that expect fewer than ten are taken together.
+        rest = (rest.0 + count as f64, rest.1 + share * total);
+        if rest.1 >= 10.0 {
+            chi2 += (rest.0 - rest.1).powi(2) / rest.1;
+            degrees += 1.0;
+            rest = (0.0, 0.0);
+        }
+    }
+    // Wilson & Hilferty: the cube root is nearly normal; 4.3 deviations are 1 in 100,000.
+    let spread = 2.0 / (9.0 * degrees);
+    let deviations = ((chi2 / degrees).cbrt() - (1.0 - spread)) / f64::sqrt(spread);
+    assert!(deviations < 4.3, "chi² {chi2} at {degrees} degrees of freedom");
 }
 
 mod tests {

@@ -27,9 +27,9 @@ pub(super) fn sample_one_minus_cos(g: Lanes, unit: Lanes) -> Lanes {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::oracle::chi_square_is_plausible;
     use crate::simulate::lanes::{LANES, mask_of, ranks_of};
     use crate::simulate::random::{Random, unit};
-    use crate::simulate::tests::chi_square_is_plausible;
 
     use super::scattered_one_minus_cos as one_minus_cos;
 

@@ -136,8 +136,8 @@ fn times(a: u64x8, b: u64) -> u64x8 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::oracle::chi_square_is_plausible;
     use crate::simulate::lanes::{mask_of, ranks_of};
-    use crate::simulate::tests::chi_square_is_plausible;
 
     #[test]
     fn it_is_splitmix64() {

@@ -13,26 +13,6 @@ pub(super) fn grid() -> Grid {
     Grid { rings: Rings::even(0.1, 100).unwrap(), depth_step_mm: 0.1, depth_bins: 50, cosine_bins: 20 }
 }
 
-/// Fails if counts stray from their shares farther than chance lets them in one of 100,000 tests.
-pub(super) fn chi_square_is_plausible(counts: &[u64], shares: &[f64]) {
-    let total = counts.iter().sum::<u64>() as f64;
-    let (mut chi2, mut degrees) = (0.0, -1.0);
-    let mut rest = (0.0, 0.0);
-    for (&count, &share) in counts.iter().zip(shares) {
-        // Bins that expect fewer than ten are taken together.
-        rest = (rest.0 + count as f64, rest.1 + share * total);
-        if rest.1 >= 10.0 {
-            chi2 += (rest.0 - rest.1).powi(2) / rest.1;
-            degrees += 1.0;
-            rest = (0.0, 0.0);
-        }
-    }
-    // Wilson & Hilferty: the cube root is nearly normal; 4.3 deviations are 1 in 100,000.
-    let spread = 2.0 / (9.0 * degrees);
-    let deviations = ((chi2 / degrees).cbrt() - (1.0 - spread)) / f64::sqrt(spread);
-    assert!(deviations < 4.3, "chi² {chi2} at {degrees} degrees of freedom");
-}
-
 pub(super) fn layer(sigma_a: f64, sigma_s: f64, g: f64, n: f64, thickness_mm: f64) -> Layer {
     Layer { sigma_a_per_mm: sigma_a, sigma_s_per_mm: sigma_s, g, refractive_index: n, thickness_mm }
 }

@@ -155,6 +155,13 @@ fn a_look_from_elsewhere_or_at_another_size_needs_no_new_light() {
     let first = ready.look_timed(gpu).expect("is drawn");
     assert!(first.iter().any(|pass| pass.name == "irradiance"), "the first look needs light");
     assert_eq!(ready.picture(gpu).expect("is read"), whole(&scene, 48));
+    let wide = Settings { width: 64, ..settings(32) };
+    ready.set_picture(gpu, passes, &wide).expect("is no larger than before");
+    ready.draw(gpu).expect("is drawn");
+    let fresh = renderer.scene(&scene, &wide, &Silent).expect("is uploaded");
+    fresh.draw(gpu).expect("is drawn");
+    let [got, wanted] = [&ready, &fresh].map(|one| one.picture(gpu).expect("is read"));
+    assert!(got == wanted, "a picture of other proportions is that of a scene made for them");
     ready.set_picture(gpu, passes, &settings(32)).expect("is no larger than before");
     ready.set_camera(gpu, &moved.camera);
     let second = ready.look_timed(gpu).expect("is drawn");

@@ -134,3 +134,23 @@ fn what_takes_other_steps_is_told_and_changes_nothing() {
         assert!(picture(renderer, &ready) == before, "change {number} has left something");
     }
 }
+
+#[test]
+fn a_lamp_that_a_pose_may_swallow_takes_a_scene_of_its_own() {
+    let Some(renderer) = renderer("a_lamp_that_a_pose_may_swallow_takes_a_scene_of_its_own") else { return };
+    let mut near = head();
+    let [_, hi] = near.bounds_mm().expect("has points");
+    for light in &mut near.lights {
+        if let Light::Point { position_mm, .. } = light {
+            *position_mm = Vec3::new(hi.x + 60.0, 0.0, 0.0);
+        }
+    }
+    let mut ready = renderer.scene(&head(), &settings(), &Silent).expect("is uploaded");
+    assert!(ready.set_lights(&renderer.gpu, &near), "beside the head as it rests");
+    assert!(ready.set_lights(&renderer.gpu, &head()));
+    let wave = Wave::sideways(100.0, 400.0, 0.0);
+    ready.set_pose(&renderer.gpu, &head(), &Pose { wave: Some(wave), ..Pose::default() }).expect("is a pose");
+    let before = picture(renderer, &ready);
+    assert!(!ready.set_lights(&renderer.gpu, &near), "the head may reach beyond the lamp");
+    assert!(picture(renderer, &ready) == before, "nothing has changed");
+}

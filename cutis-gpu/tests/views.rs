@@ -88,6 +88,8 @@ fn places_of_a_light_are_tried_where_something_may_hide_it() {
         }
     }
     assert!(tried(&scene).iter().all(|p| p.x <= 2.0), "a light without extent is one place");
+    let dark = Scene { lights: Vec::new(), ..scene.clone() };
+    assert!(tried(&dark).iter().all(|p| p.x == 0.0), "without a light no place is tried");
     // Five lights are two groups.
     let light = scene.lights[0].clone();
     scene.lights.extend([light.clone(), light.clone(), light]);

@@ -60,7 +60,8 @@ fn at(uv: vec2f) -> vec4f {
 fn two_more(before: Sides, d: i32) -> Sides {
     let near = f32(d) * before.step_uv;
     let far = near + before.step_uv;
-    let second = before.weight * before.growth;
+    // What lies beyond the farthest may be another chart's.
+    let second = select(vec2f(0.0), before.weight * before.growth, d < before.farthest);
     let growth = before.growth * before.growth_of_growth;
     var sides = before;
     sides.ahead += at(before.uv + near) * before.weight.x + at(before.uv + far) * second.x;

@@ -3,7 +3,7 @@
 use crate::passes::Passes;
 use crate::scene::SceneError;
 use crate::{Adapters, Gpu, GpuError, GpuScene};
-use cutis_render::technique::texture_space::warnings;
+use cutis_render::lit_scene::warnings;
 use cutis_render::{Frame, PassTime, Progress, RenderError, Renderer, Settings, TechniqueName};
 use cutis_scene::{Light, Scene};
 use std::time::Instant;

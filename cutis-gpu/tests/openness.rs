@@ -4,7 +4,7 @@ mod common;
 
 use common::{difference, head_in_the_studio, patch, patch_under_a_spot, read, renderer, tolerances};
 use cutis_gpu::GpuRenderer;
-use cutis_render::technique::texture_space::LitScene;
+use cutis_render::lit_scene::LitScene;
 use cutis_render::{Settings, Silent};
 use cutis_scene::validation::shapes::cuboid;
 use cutis_scene::{Material, Object, Scene, studio};

@@ -6,6 +6,7 @@
 pub mod difference;
 pub mod film;
 pub mod frame;
+pub mod lit_scene;
 pub mod passes;
 pub mod prepare;
 pub mod progress;

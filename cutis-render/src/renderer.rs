@@ -1,7 +1,7 @@
 //! The public act: scene and settings in, frame out.
 
-use crate::technique::{texture_space, truth};
-use crate::{Frame, Progress, Settings, TechniqueName};
+use crate::technique::truth;
+use crate::{Frame, Progress, Settings, TechniqueName, lit_scene};
 use cutis_scene::Scene;
 
 /// Why a scene could not be drawn.
@@ -97,8 +97,8 @@ impl Renderer for CpuRenderer {
             return Err(RenderError::EmptyScene);
         }
         match settings.technique {
-            TechniqueName::TextureSpace => texture_space::render(scene, settings, progress),
             TechniqueName::Truth => truth::render(scene, settings, progress),
+            _ => lit_scene::render(scene, settings, progress),
         }
     }
 }

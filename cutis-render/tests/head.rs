@@ -1,8 +1,8 @@
 //! The built-in head through the passes: what shadows at half the size leave out, and what seams cost.
 
+use cutis_render::lit_scene::LitScene;
 use cutis_render::passes::atlas::Atlas;
 use cutis_render::passes::half_size::{HalfSize, Rays};
-use cutis_render::technique::texture_space::LitScene;
 use cutis_render::{Frame, Settings, Silent};
 use cutis_scene::head::HeadDetail;
 use cutis_scene::{Bvh, Light, Scene, Texels, Texture, studio};

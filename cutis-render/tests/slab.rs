@@ -1,7 +1,7 @@
 //! A slab lit from behind against equation 16 by quadrature.
 
 use cutis_optics::{Profile, presets};
-use cutis_render::technique::texture_space::LitScene;
+use cutis_render::lit_scene::LitScene;
 use cutis_render::{Aov, Settings, Silent};
 use cutis_scene::{Camera, Light, Material, Mesh, Object, ScalarMap, Scene};
 use glam::{Vec2, Vec3, Vec4};

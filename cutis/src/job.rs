@@ -4,7 +4,7 @@ use crate::backend::Backend;
 use crate::cli::{AOV_SPACES, DIFFUSIONS, RenderArgs};
 use crate::scene_source::SceneSource;
 use cutis_render::film::{Bloom, Checkpoint, Film, Format, check_output, layer_path};
-use cutis_render::settings::Quality;
+use cutis_render::settings::{Quality, TechniqueSettings};
 use cutis_render::{Aov, Settings};
 use cutis_scene::ReadOptions;
 use cutis_scene::head::HeadDetail;
@@ -63,6 +63,7 @@ fn settings(args: &RenderArgs) -> Result<Settings> {
     }
     let settings = Settings {
         technique: args.technique.parse().map_err(|reason| miette!("--technique: {reason}"))?,
+        techniques: TechniqueSettings::default(),
         diffusion: named("--diffusion", &args.diffusion, DIFFUSIONS.map(|d| (d.to_string(), d)))?,
         width,
         height,

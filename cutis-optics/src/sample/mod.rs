@@ -5,17 +5,19 @@
 //! Source: image-space importance sampling, Mertens, Kautz, Bekaert, Van Reeth & Seidel 2003, "Efficient rendering of local
 //! subsurface scattering" (as restated in the project's theory notes).
 //! Which one: [`DipoleSampler`] is exact and needs no table, [`GaussianSampler`] draws from what the blurs of a renderer draw
-//! with, [`TabulatedSampler`] takes any [`crate::Profile`].
+//! with, [`TabulatedSampler`] takes any [`crate::Profile`], and [`MixtureSampler`] draws one set of radii for several of them.
 //! Not modelled: the true distance on a curved surface. The estimator divides R at that distance by p at the radius drawn.
 
 mod dipole;
 mod disc;
 mod gaussians;
+mod mixture;
 mod tabulated;
 
 pub use dipole::DipoleSampler;
 pub use disc::{DISC_SAMPLES, DISC_SAMPLES_FINE, DiscPattern, DiscSample, INTERLEAVED_PIXELS};
 pub use gaussians::GaussianSampler;
+pub use mixture::MixtureSampler;
 pub use tabulated::TabulatedSampler;
 
 use wide::f32x8;

@@ -5,8 +5,9 @@
 
 use crate::passes::atlas::{ChartMap, NO_CHART};
 use crate::passes::blur::{Axis, Fields, Widening, blur};
+use crate::passes::seven_taps::SevenTaps;
 use crate::progress::Progress;
-use crate::settings::Diffusion;
+use crate::settings::{Diffusion, Settings, TechniqueName};
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -54,11 +55,14 @@ impl Diffused {
     }
 }
 
-/// The operator of a choice.
-pub fn operator(choice: Diffusion) -> &'static dyn DiffusionOperator {
-    match choice {
+/// The operator that light is spread by.
+pub fn operator(settings: &Settings) -> Box<dyn DiffusionOperator> {
+    match (settings.technique, settings.diffusion) {
+        (TechniqueName::TextureBlur, Diffusion::Separable) => {
+            Box::new(SevenTaps::new(settings.techniques.texture_blur))
+        }
         // Without diffusion the kernel is one Gaussian of no width, which any operator leaves as it is.
-        Diffusion::None | Diffusion::Separable => &Separable,
+        _ => Box::new(Separable),
     }
 }
 

@@ -4,6 +4,7 @@
 //! rgb = (Σ lights E cos visible rho_dt(cos, m) + environment) · albedo^mix, in W/m².
 //! The distance to the light-facing surface rides in alpha for the first light; for more lights, in further layers.
 
+use crate::lit_scene::Lit;
 use crate::passes::ambient::Ambient;
 use crate::passes::atlas::Atlas;
 use crate::passes::half_size::{HalfSize, Rays};
@@ -124,8 +125,8 @@ fn light_texel(inputs: &IrradianceInputs, x: usize, y: usize, row: &mut Row) {
     }
     let whole = from_lights.element_sum().max(f32::MIN_POSITIVE);
     row.shares.iter_mut().for_each(|share| share[x] /= whole);
-    let from_environment =
-        from_environment(inputs, &point, normal, chart) * inputs.rho_dt.mean(roughness, rho_s);
+    let from_environment = from_environment(inputs.environment, inputs.ambient, &point, normal, chart)
+        * inputs.rho_dt.mean(roughness, rho_s);
     let film = material.film_inwards(point.uv);
     row.layers[0][x] = ((from_lights + from_environment) * film).extend(row.layers[0][x].w);
 }
@@ -159,10 +160,35 @@ fn visibility(
     Seen { visible, tried: places_tried(light, rays.settings.shadow_samples) }
 }
 
-fn from_environment(inputs: &IrradianceInputs, point: &SurfacePoint, normal: Vec3, chart: u32) -> Vec3 {
-    let Some(environment) = inputs.environment else { return Vec3::ZERO };
-    let (bent, open) = inputs.ambient.at(point.uv, chart, point.normal, normal);
+/// What falls on a place from all around, W/m².
+pub fn from_environment(
+    environment: Option<&FilteredEnvironment>,
+    ambient: &Ambient,
+    point: &SurfacePoint,
+    normal: Vec3,
+    chart: u32,
+) -> Vec3 {
+    let Some(environment) = environment else { return Vec3::ZERO };
+    let (bent, open) = ambient.at(point.uv, chart, point.normal, normal);
     environment.irradiance(bent) * open
+}
+
+/// Irradiance under the surface of object number `object` at any place of it, W/m²: what the texture holds for its texels, by
+/// the same shadows and the same openness.
+pub fn irradiance_at(lit: Lit, object: usize, point: &SurfacePoint, chart: u32) -> Vec3 {
+    let (maps, object) = (&lit.maps[object], &lit.scene.objects[object]);
+    let material = &object.material;
+    let normal = shading_normal(object, point);
+    let (rho_s, roughness) = (material.rho_s.at(point.uv), material.roughness.at(point.uv));
+    let around = from_environment(lit.environment, &maps.ambient, point, normal, chart);
+    let mut sum = around * maps.rho_dt.mean(roughness, rho_s);
+    for (light, visibility) in lit.scene.lights.iter().zip(&maps.visibility) {
+        let towards = light.sample(point.position_mm);
+        let cos = normal.dot(towards.dir_to_light).max(0.0);
+        let visible = maps.atlas.charts.sample(visibility, point.uv, chart).unwrap_or(0.0);
+        sum += towards.irradiance_w_per_m2 * (cos * visible * maps.rho_dt.at(cos, roughness, rho_s));
+    }
+    sum * material.film_inwards(point.uv)
 }
 
 /// The normal with the material's relief.

@@ -97,17 +97,17 @@ impl<'a> Lens<'a> {
         let seen: Vec<(Vec3, Option<Hit>)> = (0..self.grid * self.grid)
             .map(|i| {
                 let dir = self.dir(x, y, i);
-                (dir, self.resolve.bvh.closest(eye_mm, dir, f32::INFINITY))
+                (dir, self.resolve.lit.bvh.closest(eye_mm, dir, f32::INFINITY))
             })
             .collect();
         if let Some((hit, point)) = self.shared_point(&seen) {
-            let sample = self.resolve.shade(&hit, &point, (point.position_mm - eye_mm).normalize());
+            let sample = self.resolve.shade(&hit, &point, (point.position_mm - eye_mm).normalize(), [x, y]);
             return self.counted(sample, 1);
         }
         let mut sum = self.nothing();
         for (dir, hit) in &seen {
             let sample = match hit {
-                Some(hit) => self.resolve.shade(hit, &self.resolve.point(hit), *dir),
+                Some(hit) => self.resolve.shade(hit, &self.resolve.point(hit), *dir, [x, y]),
                 None => self.resolve.miss(*dir),
             };
             sum.radiance += sample.radiance;

@@ -1,29 +1,23 @@
 //! The final pass: from blurred irradiance to radiance at every pixel
 //! (d'Eon, Luebke & Enderton 2007, section 5.4, "Render final image").
 
+use crate::lit_scene::Lit;
 use crate::passes::irradiance::{distance_slot, shading_normal};
 use crate::passes::object_maps::ObjectMaps;
 use crate::passes::specular::Shine;
-use crate::passes::transmission::Transmission;
 use crate::passes::visibility::faces;
-use crate::prepare::FilteredEnvironment;
 use crate::settings::Aov;
-use cutis_scene::{Bvh, Hit, Object, Scene, SurfacePoint};
+use crate::technique::{Exitance, Inside};
+use cutis_scene::{Hit, Object, SurfacePoint};
 use glam::{Vec3, Vec4};
 use std::f32::consts::PI;
 
 /// What the final pass reads.
 pub struct Resolve<'a> {
-    /// The whole scene.
-    pub scene: &'a Scene,
-    /// Rays against it.
-    pub bvh: &'a Bvh,
-    /// The environment, if there is one.
-    pub environment: Option<&'a FilteredEnvironment>,
-    /// Textures and tables of each object.
-    pub maps: &'a [ObjectMaps],
-    /// Light that has come through each of them.
-    pub transmission: &'a [Transmission],
+    /// The scene and its light.
+    pub lit: Lit<'a>,
+    /// What the technique knows of the light inside the bodies.
+    pub inside: &'a dyn Inside,
     /// Seams of each of them, where that layer is wanted.
     pub seams: &'a [Vec<Vec4>],
     /// Layers wanted beside the radiance.
@@ -48,15 +42,44 @@ struct Parts {
     specular: Vec3,
 }
 
-/// A point on the surface, and where it lies in the textures.
-struct Place<'a> {
-    object: &'a Object,
-    maps: &'a ObjectMaps,
-    transmission: &'a Transmission,
-    seams: Option<&'a Vec<Vec4>>,
-    point: SurfacePoint,
-    normal: Vec3,
-    chart: u32,
+/// A point on the surface that is looked at, and where it lies in the textures.
+#[derive(Clone, Copy)]
+pub struct Place<'a> {
+    /// The object.
+    pub object: &'a Object,
+    /// Its number.
+    pub object_number: usize,
+    /// Its textures and tables.
+    pub maps: &'a ObjectMaps,
+    /// The point, with the smooth surface's normal.
+    pub point: SurfacePoint,
+    /// The normal with the material's relief, turned towards the eye.
+    pub normal: Vec3,
+    /// Unit vector to the eye.
+    pub dir_to_eye: Vec3,
+    /// The chart.
+    pub chart: u32,
+    /// The pixel that is being drawn.
+    pub pixel: [u32; 2],
+}
+
+impl Place<'_> {
+    /// The surface's shine here.
+    pub fn shine(&self) -> Shine {
+        let (material, uv) = (&self.object.material, self.point.uv);
+        Shine {
+            normal: self.normal,
+            dir_to_eye: self.dir_to_eye,
+            rho_s: material.rho_s.at(uv),
+            roughness: material.roughness.at(uv),
+            f0: material.f0,
+        }
+    }
+
+    /// Fraction of light number `l` that is seen from here.
+    pub fn visible(&self, l: usize) -> f32 {
+        self.maps.atlas.charts.sample(&self.maps.visibility[l], self.point.uv, self.chart).unwrap_or(0.0)
+    }
 }
 
 impl Resolve<'_> {
@@ -67,7 +90,7 @@ impl Resolve<'_> {
 
     /// The object that was hit, and what is known of it.
     pub fn object_of(&self, hit: &Hit) -> (&Object, &ObjectMaps) {
-        (&self.scene.objects[hit.object as usize], &self.maps[hit.object as usize])
+        (&self.lit.scene.objects[hit.object as usize], &self.lit.maps[hit.object as usize])
     }
 
     /// The surface that was hit.
@@ -76,47 +99,43 @@ impl Resolve<'_> {
     }
 
     fn background(&self, dir: Vec3) -> Vec4 {
-        match &self.scene.environment {
+        match &self.lit.scene.environment {
             Some(environment) if environment.visible => environment.radiance(dir).extend(1.0),
-            _ => self.scene.background.map_or(Vec4::ZERO, |radiance| radiance.extend(1.0)),
+            _ => self.lit.scene.background.map_or(Vec4::ZERO, |radiance| radiance.extend(1.0)),
         }
     }
 
-    /// What the eye sees of a point on the object and in the chart of `hit`, looking along `dir`.
-    pub fn shade(&self, hit: &Hit, point: &SurfacePoint, dir: Vec3) -> Sample {
-        let place = self.place(hit, point, dir);
-        let parts = self.parts(&place, -dir);
+    /// What the eye sees in a pixel of a point on the object and in the chart of `hit`, looking along `dir`.
+    pub fn shade(&self, hit: &Hit, point: &SurfacePoint, dir: Vec3, pixel: [u32; 2]) -> Sample {
+        let place = self.place(hit, point, dir, pixel);
+        let parts = self.parts(&place);
         let radiance = (parts.diffuse + parts.transmission + parts.specular).extend(1.0);
         let layers = self.aovs.iter().map(|&aov| self.layer(aov, &place, &parts)).collect();
         Sample { radiance, layers }
     }
 
-    fn place(&self, hit: &Hit, point: &SurfacePoint, dir: Vec3) -> Place<'_> {
+    fn place(&self, hit: &Hit, point: &SurfacePoint, dir: Vec3, pixel: [u32; 2]) -> Place<'_> {
         let (object, maps) = self.object_of(hit);
-        let normal = towards_eye(shading_normal(object, point), -dir);
-        let chart = object.charts.of_triangle[hit.triangle as usize];
-        let transmission = &self.transmission[hit.object as usize];
-        let seams = self.seams.get(hit.object as usize);
-        Place { object, maps, transmission, seams, point: *point, normal, chart }
+        Place {
+            object,
+            object_number: hit.object as usize,
+            maps,
+            point: *point,
+            normal: towards_eye(shading_normal(object, point), -dir),
+            dir_to_eye: -dir,
+            chart: object.charts.of_triangle[hit.triangle as usize],
+            pixel,
+        }
     }
 
     /// The sums of the paper's final pass.
-    fn parts(&self, place: &Place, dir_to_eye: Vec3) -> Parts {
-        let uv = place.point.uv;
-        let material = &place.object.material;
-        let shine = Shine {
-            normal: place.normal,
-            dir_to_eye,
-            rho_s: material.rho_s.at(uv),
-            roughness: material.roughness.at(uv),
-            f0: material.f0,
-        };
-        let local = place.maps.diffused.weighted_sum(&place.maps.kernel.weights, uv, place.chart);
+    fn parts(&self, place: &Place) -> Parts {
+        let shine = place.shine();
+        let Exitance { local, transmitted } = self.inside.exitance(place);
         // On the way out: the film once more, rho_dt towards the eye, and the even spread of exitance over directions.
-        let film = material.film_outwards(uv);
-        let cos_eye = place.normal.dot(dir_to_eye);
+        let film = place.object.material.film_outwards(place.point.uv);
+        let cos_eye = place.normal.dot(place.dir_to_eye);
         let leaving = film * (place.maps.rho_dt.at(cos_eye, shine.roughness, shine.rho_s) / PI);
-        let transmitted = place.transmission.at(place.maps, uv, place.chart);
         Parts {
             exitance: (local + transmitted) * film,
             diffuse: local * leaving,
@@ -127,18 +146,20 @@ impl Resolve<'_> {
 
     fn specular(&self, place: &Place, shine: &Shine) -> Vec3 {
         let Place { maps, point, chart, .. } = place;
-        let mut sum = Vec3::ZERO;
-        for (light, visibility) in self.scene.lights.iter().zip(&maps.visibility) {
-            if faces(point, light) {
-                let visible = maps.atlas.charts.sample(visibility, point.uv, *chart).unwrap_or(0.0);
-                sum += shine.from_light(&light.sample(point.position_mm)) * visible;
-            }
-        }
-        if let Some(environment) = self.environment {
+        let mut sum = self.inside.shine(place).unwrap_or_else(|| self.from_lights(place, shine));
+        if let Some(environment) = self.lit.environment {
             let open = maps.ambient.at(point.uv, *chart, point.normal, shine.normal);
             sum += shine.from_environment(environment, &maps.rho_dt, open);
         }
         sum
+    }
+
+    fn from_lights(&self, place: &Place, shine: &Shine) -> Vec3 {
+        let lights = self.lit.scene.lights.iter().enumerate();
+        let facing = lights.filter(|(_, light)| faces(&place.point, light));
+        facing
+            .map(|(l, light)| shine.from_light(&light.sample(place.point.position_mm)) * place.visible(l))
+            .sum()
     }
 
     fn layer(&self, aov: Aov, place: &Place, parts: &Parts) -> Vec4 {
@@ -161,7 +182,9 @@ impl Resolve<'_> {
             // Nothing here is left to chance.
             Aov::StandardError => Vec4::ZERO,
             Aov::Charts => Vec4::splat(place.chart as f32),
-            Aov::Seams => place.seams.map_or(Vec4::ZERO, |map| map[maps.texel_at(uv)]),
+            Aov::Seams => {
+                self.seams.get(place.object_number).map_or(Vec4::ZERO, |map| map[maps.texel_at(uv)])
+            }
             Aov::ShadowSamples => Vec4::splat(maps.tried[maps.texel_at(uv)] as f32),
             // The picture counts them.
             Aov::Samples => Vec4::ZERO,
@@ -171,7 +194,7 @@ impl Resolve<'_> {
     /// Distances towards the first four lights, mm.
     fn distances(&self, place: &Place) -> Vec4 {
         let mut distances = Vec4::ZERO;
-        for l in 0..self.scene.lights.len().min(4) {
+        for l in 0..self.lit.scene.lights.len().min(4) {
             let (layer, component) = distance_slot(l);
             distances[l] = place.maps.diffused.sample(0, layer, place.point.uv, place.chart)[component];
         }

@@ -99,6 +99,12 @@ impl Kernel {
         self.variances_mm2.last().map_or(0.0, |v| v.sqrt())
     }
 
+    /// Standard deviation along one axis of each channel's whole profile, mm: how far it spreads light.
+    pub fn deviation_mm(&self) -> Vec3 {
+        let moment: Vec3 = self.weights.iter().zip(&self.variances_mm2).map(|(&w, &v)| w * v).sum();
+        (moment / self.total().max(Vec3::splat(f32::MIN_POSITIVE))).max(Vec3::ZERO).map(f32::sqrt)
+    }
+
     /// Refuses kernels that no pass could use.
     ///
     /// # Errors

@@ -4,7 +4,7 @@ use super::artist::{Drawn, Subject, from_nothing};
 use super::watch::Watch;
 use crate::view::look::Look;
 use crate::view::shown::texture_maps;
-use cutis_render::technique::texture_space::{LitScene, warnings};
+use cutis_render::lit_scene::{LitScene, warnings};
 use cutis_render::{CpuRenderer, RenderError, Renderer, Settings, TechniqueName};
 use cutis_scene::Scene;
 use std::sync::Arc;

@@ -11,7 +11,7 @@ use cutis_gpu::cost::by_pass;
 use cutis_gpu::scene::SceneError;
 use cutis_gpu::scene::development::Developing;
 use cutis_gpu::{Adapters, GpuError, GpuRenderer, GpuScene};
-use cutis_render::technique::texture_space::warnings;
+use cutis_render::lit_scene::warnings;
 use cutis_render::{AovSpace, Frame, Progress, RenderError, Renderer, Settings};
 use cutis_scene::Scene;
 use std::sync::Arc;

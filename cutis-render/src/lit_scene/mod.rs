@@ -1,0 +1,223 @@
+//! A scene whose light has been gathered: what all techniques but the truth stand on.
+//!
+//! Atlas, openness, shadows and irradiance are the same for all of them, and so is the final pass. A technique says how
+//! light is spread over the texture, and what leaves at the place that is looked at ([`crate::technique::Inside`]).
+
+mod clock;
+mod kernel;
+mod object_pass;
+mod texture_layers;
+
+use crate::frame::Frame;
+use crate::passes::object_maps::ObjectMaps;
+use crate::passes::picture::picture;
+use crate::passes::resolve::Resolve;
+use crate::passes::seams::{DiffusionReport, diffusion_report};
+use crate::passes::transmission::{Bodies, Transmission};
+use crate::prepare::FilteredEnvironment;
+use crate::settings::{Aov, AovSpace, Diffusion, Settings, TechniqueName};
+use crate::technique::{Inside, depth_absorption, image_space, texture_blur, texture_space, wrap};
+use crate::{PassTime, Progress, RenderError};
+use clock::Clock;
+use cutis_optics::{Dipole, Medium, presets};
+use cutis_scene::{Bvh, Camera, Material, Object, Scattering, Scene};
+pub use kernel::{chosen_kernel, opaque_mm};
+use object_pass::ObjectPass;
+use std::ops::Deref;
+
+/// Smallest irradiance texture of an object that is much smaller than the largest.
+const MIN_ATLAS: u32 = 64;
+
+/// A scene whose light has been gathered and spread, ready to be looked at from anywhere. It borrows the scene, or owns it.
+pub struct LitScene<S> {
+    scene: S,
+    bvh: Bvh,
+    environment: Option<FilteredEnvironment>,
+    maps: Vec<ObjectMaps>,
+    transmission: Vec<Transmission>,
+    clock: Clock,
+}
+
+/// What is known of a scene once its light has been gathered.
+#[derive(Clone, Copy)]
+pub struct Lit<'a> {
+    /// The whole scene.
+    pub scene: &'a Scene,
+    /// Rays against it.
+    pub bvh: &'a Bvh,
+    /// The environment, if there is one.
+    pub environment: Option<&'a FilteredEnvironment>,
+    /// Textures and tables of each object.
+    pub maps: &'a [ObjectMaps],
+    /// How it is drawn.
+    pub settings: &'a Settings,
+}
+
+/// Draws a scene by any technique but the truth.
+///
+/// # Errors
+/// If a material cannot be turned into a kernel.
+pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Result<Frame, RenderError> {
+    let mut lit = LitScene::new(scene, settings, progress)?;
+    let mut frame = lit.resolve(&scene.camera, settings, progress)?;
+    if settings.aov_space == AovSpace::Texture {
+        frame.layers = settings.aovs.iter().filter_map(|&aov| lit.texture_layer(aov)).collect();
+    }
+    if settings.diffusion_report {
+        frame.diffusion_reports = lit.reports();
+    }
+    frame.passes = lit.take_passes();
+    frame.warnings = warnings(scene);
+    Ok(frame)
+}
+
+impl<S: Deref<Target = Scene>> LitScene<S> {
+    /// Runs every pass but the last.
+    ///
+    /// # Errors
+    /// If a material cannot be turned into a kernel.
+    pub fn new(scene: S, settings: &Settings, progress: &dyn Progress) -> Result<Self, RenderError> {
+        let mut clock = Clock::default();
+        let bvh = clock.time("acceleration structure", || Bvh::build(&scene.objects));
+        let environment =
+            clock.time("environment", || scene.environment.as_ref().map(FilteredEnvironment::new));
+        let sizes = atlas_sizes(&scene.objects, settings.irradiance_size);
+        let mut maps = Vec::with_capacity(scene.objects.len());
+        for (object, size) in scene.objects.iter().zip(sizes) {
+            let pass =
+                ObjectPass { scene: &scene, settings, bvh: &bvh, environment: environment.as_ref(), object };
+            maps.push(pass.run(size as usize, &mut clock, progress)?);
+            wanted(progress)?;
+        }
+        let bodies = Bodies { scene: &scene, bvh: &bvh, maps: &maps };
+        // The others have ways of their own for light that comes through.
+        let comes_through = settings.technique == TechniqueName::TextureSpace;
+        let transmission = clock.time("transmission", || {
+            let pairs = scene.objects.iter().zip(&maps).filter(|_| comes_through);
+            pairs.map(|(o, maps)| bodies.transmission(o, maps, progress)).collect()
+        });
+        Ok(Self { scene, bvh, environment, maps, transmission, clock })
+    }
+
+    /// The final pass: a picture through a camera.
+    ///
+    /// # Errors
+    /// Only [`RenderError::Stopped`].
+    pub fn resolve(
+        &mut self,
+        camera: &Camera,
+        settings: &Settings,
+        progress: &dyn Progress,
+    ) -> Result<Frame, RenderError> {
+        let aovs: &[Aov] = if settings.aov_space == AovSpace::Picture { &settings.aovs } else { &[] };
+        let lit = Lit {
+            scene: &self.scene,
+            bvh: &self.bvh,
+            environment: self.environment.as_ref(),
+            maps: &self.maps,
+            settings,
+        };
+        let seams: Vec<_> = if aovs.contains(&Aov::Seams) {
+            self.scene.objects.iter().zip(&self.maps).map(|(object, maps)| maps.seam_map(object)).collect()
+        } else {
+            Vec::new()
+        };
+        let inside = inside(lit, &self.transmission, camera, &mut self.clock, progress)?;
+        let resolve = Resolve { lit, inside: inside.as_ref(), seams: &seams, aovs };
+        let frame = self.clock.time("resolve", || picture(&resolve, camera, settings, progress));
+        wanted(progress)?;
+        Ok(frame)
+    }
+
+    /// Energy and seam error of every object.
+    pub fn reports(&self) -> Vec<DiffusionReport> {
+        self.scene
+            .objects
+            .iter()
+            .zip(&self.maps)
+            .map(|(object, maps)| diffusion_report(object, maps))
+            .collect()
+    }
+
+    /// Textures and tables of each object.
+    pub fn maps(&self) -> &[ObjectMaps] {
+        &self.maps
+    }
+
+    /// What was done and how long it took, since the light was gathered or this was asked for the last time.
+    pub fn take_passes(&mut self) -> Vec<PassTime> {
+        std::mem::take(&mut self.clock.passes)
+    }
+}
+
+/// What the technique knows of the light inside; seen by a camera, where that is how it looks.
+fn inside<'a>(
+    lit: Lit<'a>,
+    transmission: &'a [Transmission],
+    camera: &Camera,
+    clock: &mut Clock,
+    progress: &dyn Progress,
+) -> Result<Box<dyn Inside + 'a>, RenderError> {
+    let spread = || Box::new(texture_space::Spread::new(transmission));
+    Ok(match lit.settings.technique {
+        // An opaque surface is the same for all of them.
+        _ if lit.settings.diffusion == Diffusion::None => spread(),
+        TechniqueName::Wrap => Box::new(wrap::Wrapped::new(lit)?),
+        TechniqueName::DepthAbsorption => Box::new(depth_absorption::Absorbed::new(lit)?),
+        TechniqueName::TextureBlur => Box::new(texture_blur::Blurred::new(lit)),
+        TechniqueName::ImageSpace => {
+            Box::new(clock.time("irradiance image", || image_space::Sampled::new(lit, camera, progress))?)
+        }
+        TechniqueName::TextureSpace | TechniqueName::Truth => spread(),
+    })
+}
+
+/// Ends the work if nobody wants it any more.
+fn wanted(progress: &dyn Progress) -> Result<(), RenderError> {
+    if progress.goes_on() { Ok(()) } else { Err(RenderError::Stopped) }
+}
+
+/// Size of each object's texture: the largest object gets all of it (rounded up so that it can be halved), others by the square root of their area, in
+/// powers of two below.
+pub fn atlas_sizes(objects: &[Object], largest: u32) -> Vec<u32> {
+    let area = |object: &Object| {
+        (0..object.mesh.triangles.len()).map(|t| f64::from(object.mesh.area_mm2(t))).sum::<f64>()
+    };
+    let areas: Vec<f64> = objects.iter().map(area).collect();
+    let most = areas.iter().copied().fold(0.0, f64::max);
+    let largest = largest.next_multiple_of(8);
+    let size = |area: &f64| {
+        let mut size = largest;
+        while size.is_multiple_of(2)
+            && size / 2 >= MIN_ATLAS
+            && f64::from(size / 2) >= f64::from(largest) * (area / most).sqrt()
+        {
+            size /= 2;
+        }
+        size
+    };
+    areas.iter().map(size).collect()
+}
+
+/// What a person should know of a scene that is drawn by this technique.
+pub fn warnings(scene: &Scene) -> Vec<String> {
+    let open = scene.objects.iter().filter(|object| !object.closed).map(|object| {
+        let name = &object.name;
+        format!("'{name}' is not a closed surface: light that enters may find no way out, and thin parts stay dark")
+    });
+    let media = scene.objects.iter().filter_map(|object| media_of(&object.material)).flatten();
+    let invalid = media.filter_map(|medium| {
+        let validity = Dipole::new(&medium).ok()?.validity();
+        (!validity.is_good()).then(|| validity.to_string())
+    });
+    open.chain(invalid).collect()
+}
+
+/// The media of a material that is given by its coefficients.
+fn media_of(material: &Material) -> Option<[Medium; 3]> {
+    match &material.scattering {
+        Scattering::Medium(media) => Some(*media),
+        Scattering::Preset(name) => presets::find(name).ok()?.media().copied(),
+        Scattering::Kernel(_) => None,
+    }
+}

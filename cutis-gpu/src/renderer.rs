@@ -1,6 +1,7 @@
 //! The renderer: a device with everything compiled.
 
 use crate::passes::Passes;
+use crate::passes::inside::Inside;
 use crate::scene::SceneError;
 use crate::{Adapters, Gpu, GpuError, GpuScene};
 use cutis_render::lit_scene::warnings;
@@ -36,7 +37,7 @@ impl GpuRenderer {
 
     /// Whether a technique can be drawn here.
     pub fn knows(technique: TechniqueName) -> bool {
-        technique == TechniqueName::TextureSpace
+        Inside::knows(technique)
     }
 
     /// Finds out whether a scene can be drawn here.

@@ -1,5 +1,7 @@
 //! The WGSL of every pass, put together from the pass's own file and the shared ones it needs.
 
+use cutis_render::TechniqueName;
+
 macro_rules! wgsl {
     ($($file:literal),+ $(,)?) => { concat!($(include_str!($file), "\n"),+) };
 }
@@ -49,6 +51,7 @@ pub const IRRADIANCE: &str = wgsl!(
     "lib/material.wgsl",
     "lib/rho_dt.wgsl",
     "lib/environment.wgsl",
+    "lib/ambient.wgsl",
     "passes/irradiance.wgsl"
 );
 /// Pass `shares`.
@@ -83,22 +86,31 @@ pub const TRANSMISSION: &str = wgsl!(
 /// Pass `transmission`: smoothing.
 pub const SMOOTH: &str =
     wgsl!("lib/tiles.wgsl", "lib/thin_tiles.wgsl", "lib/charts.wgsl", "passes/smooth.wgsl");
-/// Pass `resolve`.
-pub const RESOLVE: &str = wgsl!(
-    "lib/mesh.wgsl",
-    "lib/charts.wgsl",
-    "lib/packing.wgsl",
-    "lib/lights.wgsl",
-    "lib/material.wgsl",
-    "lib/relief.wgsl",
-    "lib/rho_dt.wgsl",
-    "lib/specular.wgsl",
-    "lib/environment.wgsl",
-    "lib/camera.wgsl",
-    "lib/see.wgsl",
-    "passes/resolve.wgsl",
-    "passes/layer.wgsl"
-);
+/// Pass `resolve` with the part of a technique.
+macro_rules! resolve {
+    ($($file:literal),+ $(,)?) => {
+        wgsl!(
+            "lib/mesh.wgsl",
+            "lib/charts.wgsl",
+            "lib/packing.wgsl",
+            "lib/lights.wgsl",
+            "lib/material.wgsl",
+            "lib/relief.wgsl",
+            "lib/rho_dt.wgsl",
+            "lib/specular.wgsl",
+            "lib/environment.wgsl",
+            "lib/camera.wgsl",
+            "lib/see.wgsl",
+            "passes/resolve.wgsl",
+            "passes/layer.wgsl",
+            $($file),+
+        )
+    };
+}
+/// Pass `resolve` of `texture-space`.
+pub const RESOLVE: &str = resolve!("passes/inside/texture_space.wgsl");
+/// Pass `resolve` of `wrap`.
+pub const RESOLVE_WRAP: &str = resolve!("lib/ambient.wgsl", "lib/light_map.wgsl", "passes/inside/wrap.wgsl");
 /// Pass `resolve`: what lies behind everything.
 pub const SKY: &str = wgsl!("lib/mesh.wgsl", "lib/camera.wgsl", "lib/environment.wgsl", "passes/sky.wgsl");
 /// Pass `downsample`.
@@ -114,8 +126,16 @@ pub const TONE_MAP: &str = wgsl!(
     "passes/tone_map.wgsl"
 );
 
+/// Pass `resolve` as a technique has it.
+pub fn resolve(technique: TechniqueName) -> &'static str {
+    match technique {
+        TechniqueName::Wrap => RESOLVE_WRAP,
+        _ => RESOLVE,
+    }
+}
+
 /// All of them by name.
-pub const ALL: [(&str, &str); 19] = [
+pub const ALL: [(&str, &str); 20] = [
     ("deform", DEFORM),
     ("stretch", STRETCH),
     ("atlas", ATLAS),
@@ -131,6 +151,7 @@ pub const ALL: [(&str, &str); 19] = [
     ("transmission", TRANSMISSION),
     ("smooth", SMOOTH),
     ("resolve", RESOLVE),
+    ("resolve of wrap", RESOLVE_WRAP),
     ("sky", SKY),
     ("downsample", DOWNSAMPLE),
     ("bloom", BLOOM),

@@ -3,6 +3,7 @@
 use cutis_gpu::passes::diffusion::{Along, Halved, Widening};
 use cutis_gpu::passes::downsample::Pixels;
 use cutis_gpu::passes::gather::{Gaussian, Gaussians};
+use cutis_gpu::passes::inside::wrap::Wrap;
 use cutis_gpu::passes::levels::{LevelSize, MAX_GAUSSIANS, MAX_SIZES};
 use cutis_gpu::passes::openness;
 use cutis_gpu::passes::resolve::{LayerKind, Wanted};
@@ -151,6 +152,25 @@ fn structs_of_the_passes_match_wgsl() {
     same_layout!(Slabs, shaders::TRANSMISSION, "Slabs", [all, sizes, count, size_count, object, many_lights]);
     same_layout!(Smoothing, shaders::SMOOTH, "Smoothing", [step, reach, pad0, pad1]);
     same_layout!(Wanted, shaders::RESOLVE, "Wanted", [layer, samples, pad0, pad1]);
+    same_layout!(
+        Wrap,
+        shaders::RESOLVE_WRAP,
+        "Wrap",
+        [
+            wraps,
+            scatter_width,
+            scatter_colour,
+            shininess,
+            specular_colour,
+            shadow_offset_mm,
+            colour,
+            by_table,
+            energy_conserving,
+            by_power,
+            pad0,
+            pad1
+        ]
+    );
     same_layout!(Pixels, shaders::DOWNSAMPLE, "Pixels", [grid, pad0, pad1, pad2]);
     same_layout!(
         GpuFilm,

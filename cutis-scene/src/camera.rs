@@ -61,27 +61,4 @@ impl CameraRays {
     pub fn dir_through(&self, ndc: Vec2) -> Vec3 {
         (self.forward + self.right * ndc.x + self.up * ndc.y).normalize()
     }
-
-    /// Where a point falls, given as seen from the pinhole; `None` for points that are not before it.
-    pub fn ndc_of(&self, from_pinhole: Vec3) -> Option<Vec2> {
-        let depth = self.forward.dot(from_pinhole);
-        let along = |axis: Vec3| axis.dot(from_pinhole) / (axis.length_squared() * depth);
-        (depth > 0.0).then(|| Vec2::new(along(self.right), along(self.up)))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn points_fall_where_their_rays_go_through() {
-        let camera = Camera::framing([Vec3::splat(-50.0), Vec3::splat(70.0)], Vec3::new(1.0, 0.4, 2.0), 0.6);
-        let rays = camera.rays(1.5);
-        for ndc in [Vec2::ZERO, Vec2::new(-1.0, 0.3), Vec2::new(0.7, -0.9)] {
-            let found = rays.ndc_of(rays.dir_through(ndc) * 123.0).expect("before the pinhole");
-            assert!((found - ndc).abs().max_element() < 1e-5, "{ndc}: {found}");
-        }
-        assert_eq!(rays.ndc_of(-rays.dir_through(Vec2::ZERO)), None);
-    }
 }

@@ -7,6 +7,7 @@ pub mod deform;
 pub mod diffusion;
 pub mod downsample;
 pub mod gather;
+pub mod inside;
 pub mod irradiance;
 pub mod levels;
 pub mod openness;

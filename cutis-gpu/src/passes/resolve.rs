@@ -13,6 +13,8 @@ use crate::scene::material::MaterialMaps;
 use crate::shaders;
 use crate::step::{Draw, Step};
 use bytemuck::{Pod, Zeroable};
+use cutis_render::TechniqueName;
+use std::sync::OnceLock;
 use wgpu::TextureFormat as Format;
 
 /// What the picture's samples are kept as.
@@ -65,7 +67,7 @@ pub enum LayerKind {
 }
 
 /// Everything the pass reads.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct ResolveInputs<'a> {
     /// How textures are read.
     pub samplers: &'a Samplers,
@@ -79,12 +81,12 @@ pub struct ResolveInputs<'a> {
     pub geometry: &'a Geometry,
     /// What it is made of.
     pub material: &'a MaterialMaps,
-    /// Its charts, and those at half and at a quarter of the size.
-    pub charts: [&'a ChartTexture; 3],
-    /// The kernel's sum of Gaussians.
-    pub local: &'a Map,
-    /// Light that came through.
-    pub transmission: &'a Map,
+    /// Its charts, and those of the map of openness.
+    pub charts: [&'a ChartTexture; 2],
+    /// Which technique draws.
+    pub technique: TechniqueName,
+    /// What that technique's part reads.
+    pub inside: Vec<(u32, Bound<'a>)>,
     /// Fraction of each light that is seen.
     pub visibility: &'a Map,
     /// Openness.
@@ -110,24 +112,37 @@ pub struct Canvas<'a> {
 #[derive(Debug)]
 pub struct ResolvePass {
     nearest: Pipeline,
+    sky: Pipeline,
+    /// Of every technique, in the order of `TechniqueName::ALL`.
+    techniques: [OnceLock<Shading>; TechniqueName::ALL.len()],
+}
+
+/// What shades by one technique.
+#[derive(Debug)]
+struct Shading {
     shade: Pipeline,
     show: Pipeline,
-    sky: Pipeline,
 }
 
 impl ResolvePass {
-    /// Compiles them.
+    /// Compiles what all techniques need; what shades by one of them is compiled when it is used first.
     pub fn new(gpu: &Gpu) -> Self {
-        let pipeline = |source, entries, targets: &[Format], depth| {
-            let name = "resolve";
-            Pipeline::new(gpu, &Blueprint { name, source, entries, targets, additive: false, depth })
-        };
         Self {
-            nearest: pipeline(shaders::RESOLVE, ["see", "shade"], &[], true),
-            shade: pipeline(shaders::RESOLVE, ["see", "shade"], &[PICTURE], true),
-            show: pipeline(shaders::RESOLVE, ["see", "show"], &[LAYER], true),
-            sky: pipeline(shaders::SKY, ["cover_picture", "see_sky"], &[PICTURE], false),
+            nearest: pipeline(gpu, shaders::RESOLVE, ["see", "shade"], &[], true),
+            sky: pipeline(gpu, shaders::SKY, ["cover_picture", "see_sky"], &[PICTURE], false),
+            techniques: [const { OnceLock::new() }; TechniqueName::ALL.len()],
         }
+    }
+
+    fn shading(&self, gpu: &Gpu, technique: TechniqueName) -> &Shading {
+        let number = TechniqueName::ALL.iter().position(|one| *one == technique).unwrap_or_default();
+        self.techniques[number].get_or_init(|| {
+            let source = shaders::resolve(technique);
+            Shading {
+                shade: pipeline(gpu, source, ["see", "shade"], &[PICTURE], true),
+                show: pipeline(gpu, source, ["see", "show"], &[LAYER], true),
+            }
+        })
     }
 
     /// Finds out where an object is nearest, so that nothing is shaded that will be hidden.
@@ -158,8 +173,8 @@ impl ResolvePass {
 
     /// Shades an object where it is nearest.
     pub fn step(&self, gpu: &Gpu, inputs: &ResolveInputs, canvas: &Canvas) -> Step {
-        let bind_groups = vec![bind(gpu, &self.shade, inputs)];
-        draw(&self.shade, bind_groups, inputs, canvas, false)
+        let shade = &self.shading(gpu, inputs.technique).shade;
+        draw(shade, vec![bind(gpu, shade, inputs)], inputs, canvas, false)
     }
 
     /// Draws a layer of an object, `samples` in a pixel; `level` is what layers of textures are read from.
@@ -178,8 +193,9 @@ impl ResolvePass {
             (1, Bound::Texture(&level.light.array)),
             (2, Bound::Texture(level.charts.map.view())),
         ];
-        let bind_groups = vec![bind(gpu, &self.show, inputs), self.show.bind(gpu, 1, &more)];
-        draw(&self.show, bind_groups, inputs, canvas, canvas.first)
+        let show = &self.shading(gpu, inputs.technique).show;
+        let bind_groups = vec![bind(gpu, show, inputs), show.bind(gpu, 1, &more)];
+        draw(show, bind_groups, inputs, canvas, canvas.first)
     }
 
     /// Draws the environment behind everything.
@@ -211,9 +227,20 @@ impl ResolvePass {
     }
 }
 
+fn pipeline(
+    gpu: &Gpu,
+    source: &str,
+    entries: [&'static str; 2],
+    targets: &[Format],
+    depth: bool,
+) -> Pipeline {
+    let name = "resolve";
+    Pipeline::new(gpu, &Blueprint { name, source, entries, targets, additive: false, depth })
+}
+
 fn bind(gpu: &Gpu, pipeline: &Pipeline, inputs: &ResolveInputs) -> Binding {
     let ResolveInputs { samplers, environment, geometry, material, charts, .. } = inputs;
-    let bound = [
+    let mut bound = vec![
         (0, Bound::Buffer(&geometry.vertices)),
         (1, Bound::Buffer(&geometry.triangles)),
         (2, Bound::Buffer(inputs.camera)),
@@ -221,12 +248,9 @@ fn bind(gpu: &Gpu, pipeline: &Pipeline, inputs: &ResolveInputs) -> Binding {
         (4, Bound::Buffer(&material.numbers)),
         (5, Bound::Buffer(&environment.numbers)),
         (6, Bound::Texture(charts[0].map.view())),
-        (7, Bound::Texture(inputs.local.view())),
-        (8, Bound::Texture(charts[1].map.view())),
-        (9, Bound::Texture(inputs.transmission.view())),
         (10, Bound::Texture(&inputs.visibility.array)),
         (11, Bound::Texture(inputs.ambient.view())),
-        (12, Bound::Texture(charts[2].map.view())),
+        (12, Bound::Texture(charts[1].map.view())),
         (13, Bound::Texture(&environment.reflections.array)),
         (14, Bound::Texture(inputs.rho_dt.view())),
         (15, Bound::Texture(material.albedo.view())),
@@ -237,6 +261,7 @@ fn bind(gpu: &Gpu, pipeline: &Pipeline, inputs: &ResolveInputs) -> Binding {
         (20, Bound::Sampler(&samplers.repeating)),
         (21, Bound::Sampler(&samplers.around_sky)),
     ];
+    bound.extend_from_slice(&inputs.inside);
     pipeline.bind(gpu, 0, &bound)
 }
 

@@ -1,5 +1,8 @@
 // The final pass: from blurred irradiance to radiance at every sample of the picture
 // (d'Eon, Luebke & Enderton 2007, section 5.4, "Render final image").
+//
+// Bindings from 30 on belong to the technique: `passes/inside` has what leaves a body at a place, `exitance_at`, and what the
+// surface reflects from the lights, `shine_at`.
 
 @group(0) @binding(0) var<storage, read> vertices: array<Vertex>;
 @group(0) @binding(1) var<storage, read> triangles: array<Triangle>;
@@ -8,9 +11,6 @@
 @group(0) @binding(4) var<uniform> material: Material;
 @group(0) @binding(5) var<uniform> environment: Environment;
 @group(0) @binding(6) var charts: texture_2d<u32>;
-@group(0) @binding(7) var local: texture_2d<f32>;
-@group(0) @binding(8) var half_charts: texture_2d<u32>;
-@group(0) @binding(9) var transmission: texture_2d<f32>;
 @group(0) @binding(10) var visibility: texture_2d_array<f32>;
 @group(0) @binding(11) var ambient: texture_2d<f32>;
 @group(0) @binding(12) var ambient_charts: texture_2d<u32>;
@@ -35,6 +35,16 @@ struct Place {
     albedo: vec3f,
     rho_s: f32,
     roughness: f32,
+    /// The sample of the picture.
+    sample: vec2u,
+}
+
+/// Light that leaves at a place after it has been inside, before the film of the surface filters it, W/m².
+struct Exitance {
+    /// What entered close by.
+    local: vec3f,
+    /// What entered on another side and came through.
+    transmitted: vec3f,
 }
 
 /// The parts that make up the radiance at a point.
@@ -68,45 +78,52 @@ fn place_at(seen: Seen) -> Place {
         material.albedo_factor * textureSampleLevel(albedo_map, repeating, uv, 0.0).rgb,
         scalar_at(material.rho_s, textureSampleLevel(rho_s_map, repeating, uv, 0.0)),
         scalar_at(material.roughness, textureSampleLevel(roughness_map, repeating, uv, 0.0)),
+        vec2u(seen.position.xy),
     );
+}
+
+fn shine_of(place: Place) -> Shine {
+    return Shine(place.normal, place.dir_to_eye, place.rho_s, place.roughness, material.f0);
 }
 
 /// The sums of the paper's final pass.
 fn parts_at(place: Place) -> Parts {
-    let texels = around(place.uv, textureDimensions(local));
+    let texels = around(place.uv, textureDimensions(charts));
     let weights = chart_weights(charts, texels, place.chart);
-    let exitance = blend(local, texels, weights).rgb;
-    let half_texels = around(place.uv, textureDimensions(transmission));
-    let half_weights = chart_weights(half_charts, half_texels, place.chart);
-    let transmitted = blend(transmission, half_texels, half_weights).rgb;
+    let leaves = exitance_at(place, texels, weights);
     // On the way out: the film once more, rho_dt towards the eye, and the even spread of exitance over directions.
     let film_out = film(place.albedo, 1.0 - material.albedo_mix);
     let cos_eye = dot(place.normal, place.dir_to_eye);
     let leaving = film_out * (rho_dt(rho_dt_table, linear, cos_eye, place.roughness, place.rho_s) / PI);
     return Parts(
-        (exitance + transmitted) * film_out,
-        exitance * leaving,
-        transmitted * leaving,
-        specular(place, texels, weights),
+        (leaves.local + leaves.transmitted) * film_out,
+        leaves.local * leaving,
+        leaves.transmitted * leaving,
+        shine_at(place, texels, weights) + from_surroundings(place, shine_of(place)),
     );
 }
 
-fn specular(place: Place, texels: Around, weights: vec4f) -> vec3f {
-    let shine = Shine(place.normal, place.dir_to_eye, place.rho_s, place.roughness, material.f0);
+/// Radiance reflected from all lights by the lobe of skin, W/(m² sr).
+fn shine_of_lights(place: Place, texels: Around, weights: vec4f) -> vec3f {
+    let shine = shine_of(place);
     var sum = vec3f(0.0);
     var l = 0u;
     loop {
         let towards = sample_light(l, place.position_mm);
         if dot(place.smooth_normal, towards.dir_to_light) >= 0.0 {
-            let visible = blend_layer(visibility, l / 4u, texels, weights)[l % 4u];
-            sum += from_light(shine, towards) * visible;
+            sum += from_light(shine, towards) * visible_part(l, texels, weights);
         }
         continuing {
             l++;
             break if l >= arrayLength(&lights);
         }
     }
-    return sum + from_surroundings(place, shine);
+    return sum;
+}
+
+/// Fraction of light number `l` that is seen.
+fn visible_part(l: u32, texels: Around, weights: vec4f) -> f32 {
+    return blend_layer(visibility, l / 4u, texels, weights)[l % 4u];
 }
 
 /// Radiance reflected from the environment, of which some may be hidden, W/(m² sr).

@@ -130,7 +130,8 @@ impl GpuScene {
             if !progress.goes_on() {
                 return Err(RenderError::Stopped.into());
             }
-            let (maps, more) = ObjectMaps::new(gpu, passes, &self.shared, number, object, prepared)?;
+            let (maps, more) =
+                ObjectMaps::new(gpu, passes, &self.shared, number, object, prepared, settings)?;
             self.surface_steps.push(passes.deform.step(gpu, self.posing.deformable(number), &maps.geometry));
             self.objects.push(maps);
             steps.push(more);

@@ -1,12 +1,15 @@
 //! One object: its mesh and textures, and the steps that fill them.
 
+use super::SceneError;
 use super::charts::{ChartPyramid, surface_texture};
 use super::geometry::Geometry;
 use super::material::MaterialMaps;
 use super::shared::Shared;
+use crate::Gpu;
 use crate::map::{Map, View};
 use crate::passes::atlas::AtlasMaps;
 use crate::passes::diffusion::{like_level, shortened};
+use crate::passes::inside::Inside;
 use crate::passes::irradiance::IrradianceInputs;
 use crate::passes::levels::{Level, Levels};
 use crate::passes::resolve::ResolveInputs;
@@ -15,7 +18,6 @@ use crate::passes::transmission::TransmissionInputs;
 use crate::passes::visibility::{Group, visibility_map};
 use crate::passes::{LIGHTS_TOGETHER, Passes, openness};
 use crate::step::Step;
-use crate::{Gpu, GpuError};
 use bytemuck::Zeroable;
 use cutis_render::lit_scene::opaque_mm;
 use cutis_render::passes::atlas::Atlas;
@@ -25,6 +27,7 @@ use cutis_render::passes::stretch::stretch_mm_per_texel;
 use cutis_render::passes::transmission::smoothing_steps;
 use cutis_render::prepare::rho_dt::{COSINES, ROUGHNESSES};
 use cutis_render::prepare::{Kernel, RhoDt};
+use cutis_render::{Settings, TechniqueName};
 use cutis_scene::Object;
 use glam::Vec4;
 use std::sync::Arc;
@@ -78,6 +81,9 @@ pub struct ObjectMaps {
     pub seams: Seams,
     material: MaterialMaps,
     rho_dt: Map,
+    technique: TechniqueName,
+    /// What the technique knows of it.
+    inside: Inside,
 }
 
 /// Steps of one object.
@@ -101,7 +107,8 @@ impl ObjectMaps {
         number: u32,
         object: &Object,
         prepared: Prepared,
-    ) -> Result<(Self, ObjectSteps), GpuError> {
+        settings: &Settings,
+    ) -> Result<(Self, ObjectSteps), SceneError> {
         let Prepared { atlas: unrolled, texel_mm, kernel, rho_dt } = prepared;
         let size = unrolled.size as u32;
         let plan = shortened(&plan(unrolled.size, texel_mm, &kernel.variances_mm2), texel_mm);
@@ -109,6 +116,7 @@ impl ObjectMaps {
         let charts = ChartPyramid::new(gpu, &unrolled.charts, halvings(&plan));
         let seams = Seams::of(object, Arc::clone(&unrolled.charts));
         let geometry = Geometry::new(gpu, object)?;
+        let inside = Inside::new(gpu, object, kernel.total(), settings)?;
         let material = MaterialMaps::new(gpu, &object.material)?;
         let atlas = AtlasMaps::new(gpu, size);
         let surface = surface_texture(gpu, &unrolled);
@@ -136,27 +144,44 @@ impl ObjectMaps {
             seams,
             charts,
             material,
+            technique: settings.light_inside(),
+            inside,
         };
         let light = Lighting { gpu, passes, shared, number, maps: &maps };
         let shares = light.steps(&plan, &mut steps);
-        let gather = passes.gather.step(gpu, &maps.kernel, &maps.levels, &maps.charts, maps.local.view());
+        if maps.technique == TechniqueName::TextureSpace {
+            maps.add_spread(gpu, passes, shared, (number, texel_mm), shares.as_ref(), &mut steps);
+        }
+        Ok((maps, steps))
+    }
+
+    /// Adds up the Gaussians, and finds what comes through.
+    fn add_spread(
+        &mut self,
+        gpu: &Gpu,
+        passes: &Passes,
+        shared: &Shared,
+        (number, texel_mm): (u32, f32),
+        shares: Option<&Map>,
+        steps: &mut ObjectSteps,
+    ) {
+        let gather = passes.gather.step(gpu, &self.kernel, &self.levels, &self.charts, self.local.view());
         steps.light.push(gather);
         let inputs = TransmissionInputs {
             object: number,
             lights: &shared.lights,
-            kernel: &maps.kernel,
-            atlas: &maps.atlas,
-            charts: &maps.charts,
+            kernel: &self.kernel,
+            atlas: &self.atlas,
+            charts: &self.charts,
             shadows: &shared.shadows,
-            shares: shares.as_ref(),
-            levels: &maps.levels,
+            shares,
+            levels: &self.levels,
         };
-        let spare = Map::square(gpu, "transmission", size / 2, 1, Format::Rgba16Float);
-        let both = [maps.transmission.clone(), spare];
+        let spare = Map::square(gpu, "transmission", self.transmission.width(), 1, Format::Rgba16Float);
+        let both = [self.transmission.clone(), spare];
         let (more, result) = passes.transmission.steps(gpu, &inputs, &smoothing_steps(2.0 * texel_mm), both);
         steps.light.extend(more);
-        maps.transmission = result;
-        Ok((maps, steps))
+        self.transmission = result;
     }
 
     /// What the final pass reads of this object.
@@ -168,9 +193,9 @@ impl ObjectMaps {
             environment: &shared.environment,
             geometry: &self.geometry,
             material: &self.material,
-            charts: [0, 1, openness::HALVINGS].map(|halvings| &self.charts.sizes[halvings]),
-            local: &self.local,
-            transmission: &self.transmission,
+            charts: [0, openness::HALVINGS].map(|halvings| &self.charts.sizes[halvings]),
+            technique: self.technique,
+            inside: self.inside.bound(self, shared),
             visibility: &self.visibility,
             ambient: &self.ambient,
             rho_dt: &self.rho_dt,

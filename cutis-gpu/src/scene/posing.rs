@@ -2,11 +2,12 @@
 
 use super::camera::GpuCamera;
 use super::deformable::Deformable;
-use super::lights::{GpuLight, bounds_mm};
+use super::lights::GpuLight;
 use super::reach::Reach;
 use super::relight::are_alike;
 use super::shared::{Shared, gpu_lights};
 use crate::{Gpu, GpuError};
+use cutis_render::prepare::light_view::bounds_mm;
 use cutis_scene::{Camera, Pose, Scene};
 use glam::Vec3;
 use std::sync::{Mutex, PoisonError};

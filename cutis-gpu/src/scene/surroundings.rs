@@ -1,6 +1,6 @@
 //! What of a scene is seen from afar, from directions all around: how open its surfaces are follows from that.
 
-use super::lights::{GpuLight, bounds_mm};
+use super::lights::GpuLight;
 use super::object::ObjectMaps;
 use crate::Gpu;
 use crate::map::Map;
@@ -9,6 +9,7 @@ use crate::passes::openness::{FORMAT, OpennessPass};
 use crate::passes::shadow::Drawn;
 use crate::step::Step;
 use bytemuck::Zeroable;
+use cutis_render::prepare::light_view::bounds_mm;
 use cutis_scene::Light;
 use glam::Vec3;
 

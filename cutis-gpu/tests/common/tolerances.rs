@@ -63,6 +63,8 @@ pub const PATCH: Tolerance = tolerance(0.007, 1e-3);
 pub const HEAD: Tolerance = tolerance(0.0535, 0.0186);
 /// Picture of the head with three lights and the environment.
 pub const THREE_LIGHTS: Tolerance = tolerance(0.0552, 0.0247);
+/// The head by wrap lighting: its shadows are as sharp as the maps that tell them.
+pub const WRAPPED_HEAD: Tolerance = tolerance(0.05, 0.02);
 /// Picture of the scanned head.
 pub const SCAN: Tolerance = tolerance(0.0265, 0.0405);
 /// Exact convolution: relative RMS power error of one lit texel (d'Eon et al. 2007, equation 10). The processor's limit.

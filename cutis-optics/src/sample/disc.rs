@@ -52,6 +52,17 @@ impl DiscPattern {
         Self::new(count, (f64::from(shifted) + 0.5) / pixels, f64::from(place) / pixels)
     }
 
+    /// The same in another of many rounds, whose mean is taken: all of them together fill shares and turns evenly
+    /// (multiples of the plastic number's powers, Roberts 2018).
+    pub fn in_round(self, round: u32) -> Self {
+        let along = |from: f64, step: f64| (from + step * f64::from(round)).fract();
+        Self {
+            shift: along(self.shift, 0.754_877_666_246_693),
+            turns: along(self.turns, 0.569_840_290_998_053_3),
+            ..self
+        }
+    }
+
     /// The points as a sampler spreads them, from the first share of `xi` to the last.
     pub fn samples(self, sampler: &dyn RadialSampler) -> impl Iterator<Item = DiscSample> {
         (0..self.count).map(move |i| {
@@ -110,6 +121,18 @@ mod tests {
             let mut sixteenths: Vec<u32> = patterns.iter().map(|p| (16.0 * of(p)) as u32).collect();
             sixteenths.sort_unstable();
             assert_eq!(sixteenths, (0..16).collect::<Vec<u32>>());
+        }
+    }
+
+    #[test]
+    fn rounds_fill_shares_and_turns_evenly_and_the_first_changes_nothing() {
+        let first = DiscPattern::interleaved(DISC_SAMPLES, 1, 2);
+        assert_eq!(first.in_round(0), first);
+        for of in [|p: &DiscPattern| p.shift, |p: &DiscPattern| p.turns] {
+            let mut values: Vec<f64> = (0..64).map(|round| of(&first.in_round(round))).collect();
+            values.sort_by(f64::total_cmp);
+            // Of a sequence of this kind no gap is wider than three of 64 even ones.
+            assert!(values.windows(2).all(|pair| pair[1] - pair[0] < 3.0 / 64.0), "{values:?}");
         }
     }
 

@@ -29,6 +29,18 @@ impl MixtureSampler {
         (!ends.is_empty()).then_some(Self { parts: ends })
     }
 
+    /// The radius that holds a share of the samples, mm; it grows with the share, unlike [`RadialSampler::radius_mm`].
+    pub fn radius_holding(&self, share: f32) -> f32 {
+        let ends = self.parts.iter().map(|(_, sampler)| sampler.radius_mm(share));
+        let (mut low, mut high) = ends.fold((f32::INFINITY, 0.0f32), |(lo, hi), r| (lo.min(r), hi.max(r)));
+        // Halvings to the last digit of a float.
+        for _ in 0..40 {
+            let middle = 0.5 * (low + high);
+            *(if self.cdf(middle) < share { &mut low } else { &mut high }) = middle;
+        }
+        high
+    }
+
     /// Shares of the parts with their samplers.
     fn shares(&self) -> impl Iterator<Item = (f32, &dyn RadialSampler)> {
         let from = std::iter::once(0.0).chain(self.parts.iter().map(|(end, _)| *end));
@@ -103,6 +115,14 @@ mod tests {
         radii.sort_by(f32::total_cmp);
         for i in (0..n).step_by(997) {
             assert!((mixture.cdf(radii[i]) - (i as f32 + 0.5) / n as f32).abs() < 5e-5, "{i}");
+        }
+    }
+
+    #[test]
+    fn a_radius_holds_its_share() {
+        let mixture = mixture();
+        for share in [0.01, 0.3, 0.5, 0.95, 0.999] {
+            assert!((mixture.cdf(mixture.radius_holding(share)) - share).abs() < 1e-5, "{share}");
         }
     }
 

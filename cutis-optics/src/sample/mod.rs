@@ -13,12 +13,14 @@ mod disc;
 mod gaussians;
 mod mixture;
 mod tabulated;
+mod uniform_disc;
 
 pub use dipole::DipoleSampler;
 pub use disc::{DISC_SAMPLES, DISC_SAMPLES_FINE, DiscPattern, DiscSample, INTERLEAVED_PIXELS};
 pub use gaussians::GaussianSampler;
 pub use mixture::MixtureSampler;
 pub use tabulated::TabulatedSampler;
+pub use uniform_disc::UniformDisc;
 
 use wide::f32x8;
 

@@ -15,7 +15,7 @@ use crate::passes::resolve::Resolve;
 use crate::passes::seams::{DiffusionReport, diffusion_report};
 use crate::passes::transmission::{Bodies, Transmission};
 use crate::prepare::FilteredEnvironment;
-use crate::settings::{Aov, AovSpace, Diffusion, Settings, TechniqueName};
+use crate::settings::{Aov, AovSpace, Settings, TechniqueName};
 use crate::technique::{Inside, depth_absorption, image_space, texture_blur, texture_space, wrap};
 use crate::{PassTime, Progress, RenderError};
 use clock::Clock;
@@ -91,7 +91,7 @@ impl<S: Deref<Target = Scene>> LitScene<S> {
         }
         let bodies = Bodies { scene: &scene, bvh: &bvh, maps: &maps };
         // The others have ways of their own for light that comes through.
-        let comes_through = settings.technique == TechniqueName::TextureSpace;
+        let comes_through = settings.light_inside() == TechniqueName::TextureSpace;
         let transmission = clock.time("transmission", || {
             let pairs = scene.objects.iter().zip(&maps).filter(|_| comes_through);
             pairs.map(|(o, maps)| bodies.transmission(o, maps, progress)).collect()
@@ -159,9 +159,7 @@ fn inside<'a>(
     progress: &dyn Progress,
 ) -> Result<Box<dyn Inside + 'a>, RenderError> {
     let spread = || Box::new(texture_space::Spread::new(transmission));
-    Ok(match lit.settings.technique {
-        // An opaque surface is the same for all of them.
-        _ if lit.settings.diffusion == Diffusion::None => spread(),
+    Ok(match lit.settings.light_inside() {
         TechniqueName::Wrap => Box::new(wrap::Wrapped::new(lit)?),
         TechniqueName::DepthAbsorption => Box::new(depth_absorption::Absorbed::new(lit)?),
         TechniqueName::TextureBlur => Box::new(texture_blur::Blurred::new(lit)),

@@ -5,7 +5,7 @@
 //! once. At edges, and where texels are smaller than pixels, every sample is shaded.
 
 use crate::frame::{Frame, Layer};
-use crate::passes::resolve::{Resolve, Sample};
+use crate::passes::resolve::{PixelPart, Resolve, Sample};
 use crate::progress::Progress;
 use crate::sampling::random2;
 use crate::settings::{Aov, Settings};
@@ -81,7 +81,7 @@ impl<'a> Lens<'a> {
             rays: camera.rays(size.x / size.y),
             eye_mm: camera.position_mm,
             size,
-            grid: (settings.samples_per_pixel as f32).sqrt().ceil() as u32,
+            grid: settings.samples_grid(),
             seed: settings.seed,
         }
     }
@@ -101,13 +101,18 @@ impl<'a> Lens<'a> {
             })
             .collect();
         if let Some((hit, point)) = self.shared_point(&seen) {
-            let sample = self.resolve.shade(&hit, &point, (point.position_mm - eye_mm).normalize(), [x, y]);
+            let whole = PixelPart { sample: [x, y], is_whole: true };
+            let sample = self.resolve.shade(&hit, &point, (point.position_mm - eye_mm).normalize(), whole);
             return self.counted(sample, 1);
         }
         let mut sum = self.nothing();
-        for (dir, hit) in &seen {
+        for (i, (dir, hit)) in (0..).zip(&seen) {
+            let part = PixelPart {
+                sample: [x * self.grid + i % self.grid, y * self.grid + i / self.grid],
+                is_whole: self.grid == 1,
+            };
             let sample = match hit {
-                Some(hit) => self.resolve.shade(hit, &self.resolve.point(hit), *dir, [x, y]),
+                Some(hit) => self.resolve.shade(hit, &self.resolve.point(hit), *dir, part),
                 None => self.resolve.miss(*dir),
             };
             sum.radiance += sample.radiance;

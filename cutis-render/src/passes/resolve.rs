@@ -59,8 +59,20 @@ pub struct Place<'a> {
     pub dir_to_eye: Vec3,
     /// The chart.
     pub chart: u32,
-    /// The pixel that is being drawn.
-    pub pixel: [u32; 2],
+    /// The pixel that is drawn if it is drawn by this place alone; else which of the picture's samples, counted over the whole
+    /// picture.
+    pub sample: [u32; 2],
+    /// Whether the pixel is drawn by this place alone.
+    pub is_whole_pixel: bool,
+}
+
+/// What of the picture is drawn.
+#[derive(Debug, Clone, Copy)]
+pub struct PixelPart {
+    /// The pixel, or one of the samples of all pixels.
+    pub sample: [u32; 2],
+    /// Whether it is a pixel.
+    pub is_whole: bool,
 }
 
 impl Place<'_> {
@@ -105,16 +117,16 @@ impl Resolve<'_> {
         }
     }
 
-    /// What the eye sees in a pixel of a point on the object and in the chart of `hit`, looking along `dir`.
-    pub fn shade(&self, hit: &Hit, point: &SurfacePoint, dir: Vec3, pixel: [u32; 2]) -> Sample {
-        let place = self.place(hit, point, dir, pixel);
+    /// What the eye sees of a point on the object and in the chart of `hit`, looking along `dir`.
+    pub fn shade(&self, hit: &Hit, point: &SurfacePoint, dir: Vec3, part: PixelPart) -> Sample {
+        let place = self.place(hit, point, dir, part);
         let parts = self.parts(&place);
         let radiance = (parts.diffuse + parts.transmission + parts.specular).extend(1.0);
         let layers = self.aovs.iter().map(|&aov| self.layer(aov, &place, &parts)).collect();
         Sample { radiance, layers }
     }
 
-    fn place(&self, hit: &Hit, point: &SurfacePoint, dir: Vec3, pixel: [u32; 2]) -> Place<'_> {
+    fn place(&self, hit: &Hit, point: &SurfacePoint, dir: Vec3, part: PixelPart) -> Place<'_> {
         let (object, maps) = self.object_of(hit);
         Place {
             object,
@@ -124,7 +136,8 @@ impl Resolve<'_> {
             normal: towards_eye(shading_normal(object, point), -dir),
             dir_to_eye: -dir,
             chart: object.charts.of_triangle[hit.triangle as usize],
-            pixel,
+            sample: part.sample,
+            is_whole_pixel: part.is_whole,
         }
     }
 

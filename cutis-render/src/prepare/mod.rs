@@ -3,6 +3,7 @@
 
 pub mod colour_ramp;
 pub mod kernel;
+pub mod light_view;
 pub mod prefilter;
 pub mod radial;
 pub mod rho_dt;
@@ -10,5 +11,6 @@ pub mod skin_table;
 
 pub use colour_ramp::ColourRamp;
 pub use kernel::Kernel;
+pub use light_view::LightView;
 pub use prefilter::FilteredEnvironment;
 pub use rho_dt::RhoDt;

@@ -122,6 +122,17 @@ impl Settings {
         Self { width, height, samples_per_pixel, irradiance_size, shadow_samples, ambient_samples, ..self }
     }
 
+    /// Samples along a side of a pixel, where they are laid out as a grid.
+    pub fn samples_grid(&self) -> u32 {
+        (self.samples_per_pixel as f32).sqrt().ceil() as u32
+    }
+
+    /// The technique that says how light gets through the bodies: an opaque surface is the same for all, and is drawn as by
+    /// `texture-space`.
+    pub fn light_inside(&self) -> TechniqueName {
+        if self.diffusion == Diffusion::None { TechniqueName::TextureSpace } else { self.technique }
+    }
+
     /// Checks every setting against its range.
     ///
     /// # Errors

@@ -3,17 +3,26 @@
 //!
 //! Symbols: x' a sample on the tangent plane, r' its distance from the point; p what the image shows in its place, r the true
 //! distance of p; E irradiance. The estimate of ∫ R(r) E dA is Σ R(r) E(p) |dA/dA'| / (N p(r')), r' drawn with density p.
+//! Beside the paper: samples of all channels at once, of any profile; the place of a sample lies on the plane of the texel
+//! that shows it, not at its middle; the density of all images together divides what any of them finds.
+//! Not modelled: what no image shows. Light that enters there is missing, or counts as what is seen.
 
 use super::{Exitance, Inside};
 use crate::lit_scene::Lit;
-use crate::passes::irradiance_image::IrradianceImage;
+use crate::passes::irradiance_image::{IrradianceImage, Seen, View};
 use crate::passes::resolve::Place;
-use crate::prepare::radial::RadialKernel;
+use crate::prepare::LightView;
+use crate::prepare::radial::{PlaceToLook, RadialKernel};
 use crate::settings::within;
 use crate::{Progress, RenderError};
-use cutis_scene::Camera;
+use cutis_scene::{Camera, Object};
 use glam::Vec3;
 use std::fmt;
+
+/// Lights whose far sides are looked for: more would each cost as much as the camera's own image.
+pub const MAX_LIGHT_VIEWS: usize = 4;
+/// Width and height of what a light sees, texels.
+pub const LIGHT_VIEW_TEXELS: usize = 512;
 
 /// Numbers of the technique `image-space`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -112,44 +121,142 @@ impl ImageSpaceSettings {
     }
 }
 
-/// Light gathered from an image of the irradiance.
+/// Light gathered from images of the irradiance.
 pub struct Sampled<'a> {
     lit: Lit<'a>,
-    image: IrradianceImage,
+    /// What the camera sees, then what lights see.
+    images: Vec<IrradianceImage>,
     /// Of every object, in order.
-    kernels: Vec<RadialKernel>,
+    kernels: Vec<Kernels>,
+}
+
+/// One object's profile, for places that are a whole pixel and for those that share it.
+struct Kernels {
+    whole: RadialKernel,
+    shared: RadialKernel,
 }
 
 impl<'a> Sampled<'a> {
-    /// Draws the image.
+    /// Draws the images.
     ///
     /// # Errors
     /// If a material has no profile, or nobody wants the picture any more.
     pub fn new(lit: Lit<'a>, camera: &Camera, progress: &dyn Progress) -> Result<Self, RenderError> {
-        let kernel = |object: &cutis_scene::Object| RadialKernel::new(&object.material, lit.settings);
-        let kernels = lit.scene.objects.iter().map(kernel).collect::<Result<_, RenderError>>()?;
-        let image = IrradianceImage::seen_by_camera(lit, camera, progress);
-        if progress.goes_on() { Ok(Self { lit, image, kernels }) } else { Err(RenderError::Stopped) }
+        let settings = lit.settings;
+        let grid = settings.samples_grid();
+        let kernels = |object: &Object| {
+            let whole = RadialKernel::new(&object.material, settings, 1)?;
+            let shared = RadialKernel::new(&object.material, settings, grid * grid)?;
+            Ok(Kernels { whole, shared })
+        };
+        let kernels = lit.scene.objects.iter().map(kernels).collect::<Result<_, RenderError>>()?;
+        let size = [settings.width, settings.height].map(|side| (side * grid) as usize);
+        let view = View::of_camera(camera, size[0] as f32 / size[1] as f32);
+        let of_camera = (view, size);
+        let of_lights = light_views(lit).into_iter().map(|view| (view, [LIGHT_VIEW_TEXELS; 2]));
+        let images = std::iter::once(of_camera)
+            .chain(of_lights)
+            .map(|(view, size)| IrradianceImage::new(lit, view, size, progress))
+            .collect();
+        if progress.goes_on() { Ok(Self { lit, images, kernels }) } else { Err(RenderError::Stopped) }
+    }
+}
+
+/// Views of the lights that see far sides, where they are wanted.
+pub fn light_views(lit: Lit) -> Vec<View> {
+    let points = || lit.scene.objects.iter().flat_map(|o| o.mesh.positions_mm.iter().copied());
+    let lights = lit.scene.lights.iter().take(MAX_LIGHT_VIEWS);
+    let wanted = lights.filter(|_| lit.settings.techniques.image_space.light_views);
+    wanted.filter_map(|light| Some(View::of_light(&LightView::over_points(light, points())?))).collect()
+}
+
+/// The point that light is gathered for, and the plane that samples lie on.
+struct Gathering<'a> {
+    settings: &'a ImageSpaceSettings,
+    images: &'a [IrradianceImage],
+    kernel: &'a RadialKernel,
+    object: usize,
+    middle_mm: Vec3,
+    normal: Vec3,
+}
+
+impl Gathering<'_> {
+    /// What one image shows around the point, by whether the camera sees it, too. Samples that met nothing count, or not.
+    fn from_image(&self, number: usize, places: &[PlaceToLook]) -> Exitance {
+        let (tangent, bitangent) = self.normal.any_orthonormal_pair();
+        let mut sum = Exitance::default();
+        let mut valid = 0;
+        for place in places {
+            let plane_mm = self.middle_mm + tangent * place.offset_mm.x + bitangent * place.offset_mm.y;
+            let Some(seen) = self.images[number].through(plane_mm, self.object) else { continue };
+            valid += 1;
+            let (expected, by_camera) = self.expected_per_mm2(number, &seen, plane_mm, place.density_per_mm2);
+            let r_mm = seen.position_mm.distance(self.middle_mm);
+            let light = self.kernel.at_mm(r_mm).truncate() * seen.irradiance_w_per_m2 / expected;
+            *(if by_camera { &mut sum.local } else { &mut sum.transmitted }) += light;
+        }
+        // Lights look for what the camera misses: what they miss as well is dark.
+        if self.settings.count == SampleCount::Valid && number == 0 && valid > 0 {
+            let scale = places.len() as f32 / valid as f32;
+            sum = Exitance { local: sum.local * scale, transmitted: sum.transmitted * scale };
+        }
+        sum
+    }
+
+    /// Samples of all images that are to be expected on an area of the body (balance heuristic), and whether the camera sees
+    /// it. Of the image that the sample comes from, the density on the plane is known.
+    fn expected_per_mm2(
+        &self,
+        number: usize,
+        seen: &Seen,
+        plane_mm: Vec3,
+        density_per_mm2: f32,
+    ) -> (f32, bool) {
+        let (mut expected, mut by_camera) = (0.0, false);
+        for (i, image) in self.images.iter().enumerate() {
+            let from_here = i == number;
+            if !from_here && !image.shows(seen.position_mm, self.object) {
+                continue;
+            }
+            by_camera |= i == 0;
+            let (plane_mm, density) = if from_here {
+                (plane_mm, density_per_mm2)
+            } else {
+                let Some(plane_mm) = self.on_plane(image, seen.position_mm) else { continue };
+                (plane_mm, self.kernel.density_per_mm2(plane_mm.distance(self.middle_mm)))
+            };
+            let plane = [plane_mm, self.normal];
+            let jacobian = image.view.jacobian([seen.position_mm, seen.normal], plane);
+            expected += density / if self.settings.jacobian { jacobian } else { 1.0 };
+        }
+        (expected.max(f32::MIN_POSITIVE), by_camera)
+    }
+
+    /// Where the view line through a place on the body meets the plane.
+    fn on_plane(&self, image: &IrradianceImage, body_mm: Vec3) -> Option<Vec3> {
+        let dir = image.view.dir_at(body_mm);
+        let cos = self.normal.dot(dir);
+        (cos.abs() > 1e-4).then(|| body_mm + dir * (self.normal.dot(self.middle_mm - body_mm) / cos))
     }
 }
 
 impl Inside for Sampled<'_> {
     fn exitance(&self, place: &Place) -> Exitance {
-        let settings = &self.lit.settings.techniques.image_space;
-        let kernel = &self.kernels[place.object_number];
-        let (middle_mm, normal) = (place.point.position_mm, place.point.normal);
-        let (tangent, bitangent) = normal.any_orthonormal_pair();
-        let (mut sum, mut valid, mut all) = (Vec3::ZERO, 0, 0);
-        for sample in kernel.pattern(place.pixel) {
-            all += 1;
-            let on_plane_mm = middle_mm + tangent * sample.offset_mm[0] + bitangent * sample.offset_mm[1];
-            let Some(seen) = self.image.through(on_plane_mm, place.object_number) else { continue };
-            valid += 1;
-            let jacobian = if settings.jacobian { seen.jacobian(normal) } else { 1.0 };
-            let r_mm = seen.position_mm.distance(middle_mm);
-            sum += kernel.at_mm(r_mm) * seen.irradiance_w_per_m2 * (jacobian / sample.pdf_per_mm2);
-        }
-        let count = if settings.count == SampleCount::Valid { valid } else { all };
-        Exitance { local: sum / count.max(1) as f32, transmitted: Vec3::ZERO }
+        let Kernels { whole, shared } = &self.kernels[place.object_number];
+        let kernel = if place.is_whole_pixel { whole } else { shared };
+        let gathering = Gathering {
+            settings: &self.lit.settings.techniques.image_space,
+            images: &self.images,
+            kernel,
+            object: place.object_number,
+            middle_mm: place.point.position_mm,
+            normal: place.point.normal,
+        };
+        let places = kernel.places_of(place.sample);
+        let images = 0..self.images.len();
+        images.map(|number| gathering.from_image(number, places)).fold(Exitance::default(), |a, b| Exitance {
+            local: a.local + b.local,
+            transmitted: a.transmitted + b.transmitted,
+        })
     }
 }

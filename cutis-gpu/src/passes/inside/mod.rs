@@ -1,0 +1,53 @@
+//! What leaves a body at the place that is looked at: the part of the final pass that each technique has of its own. The twins
+//! of `Inside` in cutis-render and of its techniques.
+
+pub mod wrap;
+
+use crate::Gpu;
+use crate::pipeline::Bound;
+use crate::scene::SceneError;
+use crate::scene::object::ObjectMaps;
+use crate::scene::shared::Shared;
+use cutis_render::{Settings, TechniqueName};
+use cutis_scene::Object;
+use glam::Vec3;
+use wrap::WrapMaps;
+
+/// What the technique knows of one object.
+#[derive(Debug)]
+pub enum Inside {
+    /// Light that was spread in texture space is among the object's own textures.
+    Spread,
+    /// `wrap`.
+    Wrap(WrapMaps),
+}
+
+impl Inside {
+    /// Whether a technique is drawn here.
+    pub fn knows(technique: TechniqueName) -> bool {
+        matches!(technique, TechniqueName::TextureSpace | TechniqueName::Wrap)
+    }
+
+    /// Uploads what the technique of the settings knows of an object, whose diffuse reflectance is `colour`.
+    ///
+    /// # Errors
+    /// If its material does not serve.
+    pub fn new(gpu: &Gpu, object: &Object, colour: Vec3, settings: &Settings) -> Result<Self, SceneError> {
+        Ok(match settings.light_inside() {
+            TechniqueName::Wrap => Self::Wrap(WrapMaps::new(gpu, &object.material, colour, settings)?),
+            _ => Self::Spread,
+        })
+    }
+
+    /// What the technique's part of the final pass reads.
+    pub fn bound<'a>(&'a self, maps: &'a ObjectMaps, shared: &'a Shared) -> Vec<(u32, Bound<'a>)> {
+        match self {
+            Self::Spread => vec![
+                (30, Bound::Texture(maps.local.view())),
+                (31, Bound::Texture(maps.charts.sizes[1].map.view())),
+                (32, Bound::Texture(maps.transmission.view())),
+            ],
+            Self::Wrap(wrap) => wrap.bound(shared),
+        }
+    }
+}

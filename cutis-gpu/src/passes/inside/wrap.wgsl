@@ -1,0 +1,119 @@
+// Wrap lighting (Green 2004, section 16.2 and listing 16-1): the twin of cutis-render's `wrap`.
+
+@group(0) @binding(30) var<uniform> wrap: Wrap;
+/// Light per irradiance in rgb, the specular power in alpha, by N·L along x and N·H along y.
+@group(0) @binding(31) var skin_table: texture_2d<f32>;
+@group(0) @binding(32) var irradiance_map: texture_2d<f32>;
+@group(0) @binding(33) var depths: texture_2d_array<f32>;
+
+struct Wrap {
+    /// Cosine by which light goes on beyond the terminator.
+    wraps: vec3f,
+    scatter_width: f32,
+    scatter_colour: vec3f,
+    shininess: f32,
+    /// Colour of the paper's specular power.
+    specular_colour: vec3f,
+    shadow_offset_mm: f32,
+    /// Diffuse reflectance of the body.
+    colour: vec3f,
+    by_table: u32,
+    energy_conserving: u32,
+    /// Whether lights are reflected by the paper's power.
+    by_power: u32,
+    pad0: u32,
+    pad1: u32,
+}
+
+fn exitance_at(place: Place, texels: Around, weights: vec4f) -> Exitance {
+    var sum = vec3f(0.0);
+    var l = 0u;
+    loop {
+        sum += wrapped_light(place, l, texels, weights);
+        continuing {
+            l++;
+            break if l >= arrayLength(&lights);
+        }
+    }
+    let around = from_environment(place.uv, place.chart, place.smooth_normal, place.normal);
+    let light = sum + around * mean_rho_dt(rho_dt_table, linear, place.roughness, place.rho_s);
+    return Exitance(light * film(place.albedo, material.albedo_mix) * wrap.colour, vec3f(0.0));
+}
+
+fn shine_at(place: Place, texels: Around, weights: vec4f) -> vec3f {
+    if wrap.by_power == 0u {
+        return shine_of_lights(place, texels, weights);
+    }
+    var sum = vec3f(0.0);
+    var l = 0u;
+    loop {
+        let towards = sample_light(l, place.position_mm);
+        let power = light_at(place, towards).a;
+        if power > 0.0 {
+            let visible = wrapped_visible(place, l, towards, texels, weights);
+            sum += towards.irradiance_w_per_m2 * wrap.specular_colour * (power * visible / PI);
+        }
+        continuing {
+            l++;
+            break if l >= arrayLength(&lights);
+        }
+    }
+    return sum;
+}
+
+/// What enters of light number `l`, W/m².
+fn wrapped_light(place: Place, l: u32, texels: Around, weights: vec4f) -> vec3f {
+    let towards = sample_light(l, place.position_mm);
+    let light = light_at(place, towards).rgb;
+    if all(light == vec3f(0.0)) {
+        return vec3f(0.0);
+    }
+    let wrapped = (dot(place.normal, towards.dir_to_light) + wrap.wraps) / (1.0 + wrap.wraps);
+    let cos = max(wrapped.x, max(wrapped.y, wrapped.z));
+    let enters = rho_dt(rho_dt_table, linear, cos, place.roughness, place.rho_s);
+    return towards.irradiance_w_per_m2 * light * (enters * wrapped_visible(place, l, towards, texels, weights));
+}
+
+fn light_at(place: Place, towards: LightSample) -> vec4f {
+    let h = unit_or(towards.dir_to_light + place.dir_to_eye, place.normal);
+    let cos_light = dot(place.normal, towards.dir_to_light);
+    let cos_half = dot(place.normal, h);
+    if wrap.by_table != 0u {
+        return textureSampleLevel(skin_table, linear, vec2f(0.5 + 0.5 * cos_light, 0.5 + 0.5 * cos_half), 0.0);
+    }
+    return listing(cos_light, cos_half);
+}
+
+/// The function of the paper's listing.
+fn listing(cos_light: f32, cos_half: f32) -> vec4f {
+    let wrapped = (cos_light + wrap.wraps) / (1.0 + wrap.wraps);
+    let energy = select(vec3f(1.0), 1.0 / (1.0 + wrap.wraps), wrap.energy_conserving != 0u);
+    let width = wrap.scatter_width;
+    var tint = vec3f(0.0);
+    if width > 0.0 {
+        tint = smoothstep(vec3f(0.0), vec3f(width), wrapped)
+            * (1.0 - smoothstep(vec3f(width), vec3f(2.0 * width), wrapped));
+    }
+    let lit = max(wrapped, vec3f(0.0));
+    let power = select(0.0, pow(max(cos_half, 0.0), wrap.shininess), any(wrapped > vec3f(0.0)));
+    return vec4f((lit + tint * wrap.scatter_colour) * energy, power);
+}
+
+/// Fraction of a light that is seen. Beyond the terminator the body itself would hide all of it: what hides the light from a
+/// place above counts.
+fn wrapped_visible(place: Place, l: u32, towards: LightSample, texels: Around, weights: vec4f) -> f32 {
+    if dot(place.smooth_normal, towards.dir_to_light) >= 0.0 {
+        return visible_part(l, texels, weights);
+    }
+    let map = map_of(l);
+    if map.layer == NO_MAP {
+        return 1.0;
+    }
+    let axes_mm = in_map_axes(map, place.position_mm + place.smooth_normal * wrap.shadow_offset_mm);
+    let size = vec2f(textureDimensions(depths));
+    let texel = vec2i(floor(map_uv(map, axes_mm) * size));
+    if any(texel < vec2i(0)) || any(texel >= vec2i(size)) {
+        return 1.0;
+    }
+    return select(0.0, 1.0, textureLoad(depths, texel, map.layer, 0).x >= axes_mm.z);
+}

@@ -15,8 +15,12 @@ const NOTHING: u32 = u32::MAX;
 pub const GRAZING: f32 = 0.02;
 /// Most area on the body that an area on the tangent plane may stand for: at the edges of things it has no bound.
 pub const MAX_JACOBIAN: f32 = 8.0;
-/// Widths of a texel within which two depths are one surface.
+/// Widths of texels within which two depths are one surface.
 pub const SAME_SURFACE_TEXELS: f32 = 2.0;
+/// Cosine between normals above which two places are on one side of a thin part.
+pub const SAME_SIDE: f32 = 0.3;
+/// Cosine between view and surface below which a texel holds no more depths than at it.
+pub const MIN_SLANT: f32 = 0.1;
 
 /// From where an image is seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -123,10 +127,12 @@ pub struct IrradianceImage {
 pub struct Seen {
     /// Place on the body, mm.
     pub position_mm: Vec3,
-    /// Unit normal of the smooth surface there.
+    /// Unit normal of the triangle there: places lie on it, and not on the smooth surface.
     pub normal: Vec3,
     /// Irradiance under the surface, W/m².
     pub irradiance_w_per_m2: Vec3,
+    /// Width of the texel on the body along the view, mm: how far the place may be off.
+    pub uncertain_mm: f32,
 }
 
 impl IrradianceImage {
@@ -173,18 +179,23 @@ impl IrradianceImage {
             position_mm: point_mm + dir * further_mm,
             normal: texel.normal,
             irradiance_w_per_m2: texel.irradiance_w_per_m2,
+            uncertain_mm: self.uncertain_mm(texel),
         })
     }
 
-    /// Whether a place on an object is seen, and not something before it.
-    pub fn shows(&self, body_mm: Vec3, object: usize) -> bool {
-        let Some(texel) = self.texel(body_mm, object) else { return false };
-        let distance_mm = self.view.distance_mm(body_mm);
-        let spread = if self.view.parallel { 1.0 } else { distance_mm };
-        let texel_mm = 2.0 * self.view.half.y * spread / self.size[1] as f32;
-        let slant = texel.normal.dot(self.view.dir_at(body_mm)).abs().max(0.1);
-        (self.view.distance_mm(texel.position_mm) - distance_mm).abs()
-            <= SAME_SURFACE_TEXELS * texel_mm / slant
+    /// Depths that a texel's surface has within the texel, mm.
+    fn uncertain_mm(&self, texel: &Texel) -> f32 {
+        let spread = if self.view.parallel { 1.0 } else { self.view.distance_mm(texel.position_mm) };
+        let slant = texel.normal.dot(self.view.dir_at(texel.position_mm)).abs().max(MIN_SLANT);
+        2.0 * self.view.half.y * spread / (self.size[1] as f32 * slant)
+    }
+
+    /// Whether a place on an object, found in another image, is seen here as well: the same surface, from the same side.
+    pub fn shows(&self, there: &Seen, object: usize) -> bool {
+        let Some(texel) = self.texel(there.position_mm, object) else { return false };
+        let apart_mm = self.view.distance_mm(texel.position_mm) - self.view.distance_mm(there.position_mm);
+        let uncertain_mm = self.uncertain_mm(texel) + there.uncertain_mm;
+        texel.normal.dot(there.normal) > SAME_SIDE && apart_mm.abs() <= SAME_SURFACE_TEXELS * uncertain_mm
     }
 }
 
@@ -195,7 +206,7 @@ fn seen_along(lit: Lit, from_mm: Vec3, dir: Vec3) -> Texel {
     let chart = object.charts.of_triangle[hit.triangle as usize];
     Texel {
         position_mm: point.position_mm,
-        normal: point.normal,
+        normal: point.flat_normal,
         irradiance_w_per_m2: irradiance_at(lit, hit.object as usize, &point, chart),
         object: hit.object,
     }

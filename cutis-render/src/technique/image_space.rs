@@ -4,12 +4,13 @@
 //! Symbols: x' a sample on the tangent plane, r' its distance from the point; p what the image shows in its place, r the true
 //! distance of p; E irradiance. The estimate of ∫ R(r) E dA is Σ R(r) E(p) |dA/dA'| / (N p(r')), r' drawn with density p.
 //! Beside the paper: samples of all channels at once, of any profile; the place of a sample lies on the plane of the texel
-//! that shows it, not at its middle; the density of all images together divides what any of them finds.
+//! that shows it, not at its middle. The paper combines images by the balance heuristic, which needs them to agree on what
+//! they show: maps of different grain do not, and dark stripes come of it. The first image that shows a place answers for it.
 //! Not modelled: what no image shows. Light that enters there is missing, or counts as what is seen.
 
 use super::{Exitance, Inside};
 use crate::lit_scene::Lit;
-use crate::passes::irradiance_image::{IrradianceImage, Seen, View};
+use crate::passes::irradiance_image::{IrradianceImage, View};
 use crate::passes::resolve::Place;
 use crate::prepare::LightView;
 use crate::prepare::radial::{PlaceToLook, RadialKernel};
@@ -181,62 +182,29 @@ struct Gathering<'a> {
 }
 
 impl Gathering<'_> {
-    /// What one image shows around the point, by whether the camera sees it, too. Samples that met nothing count, or not.
-    fn from_image(&self, number: usize, places: &[PlaceToLook]) -> Exitance {
+    /// Light that is found in one image around the point, W/m², of all that the images before do not show.
+    fn from_image(&self, number: usize, places: &[PlaceToLook]) -> Vec3 {
         let (tangent, bitangent) = self.normal.any_orthonormal_pair();
-        let mut sum = Exitance::default();
-        let mut valid = 0;
+        let (image, before) = (&self.images[number], &self.images[..number]);
+        let (mut sum, mut valid) = (Vec3::ZERO, 0);
         for place in places {
             let plane_mm = self.middle_mm + tangent * place.offset_mm.x + bitangent * place.offset_mm.y;
-            let Some(seen) = self.images[number].through(plane_mm, self.object) else { continue };
+            let Some(seen) = image.through(plane_mm, self.object) else { continue };
             valid += 1;
-            let (expected, by_camera) = self.expected_per_mm2(number, &seen, plane_mm, place.density_per_mm2);
-            let r_mm = seen.position_mm.distance(self.middle_mm);
-            let light = self.kernel.at_mm(r_mm).truncate() * seen.irradiance_w_per_m2 / expected;
-            *(if by_camera { &mut sum.local } else { &mut sum.transmitted }) += light;
-        }
-        // Lights look for what the camera misses: what they miss as well is dark.
-        if self.settings.count == SampleCount::Valid && number == 0 && valid > 0 {
-            let scale = places.len() as f32 / valid as f32;
-            sum = Exitance { local: sum.local * scale, transmitted: sum.transmitted * scale };
-        }
-        sum
-    }
-
-    /// Samples of all images that are to be expected on an area of the body (balance heuristic), and whether the camera sees
-    /// it. Of the image that the sample comes from, the density on the plane is known.
-    fn expected_per_mm2(
-        &self,
-        number: usize,
-        seen: &Seen,
-        plane_mm: Vec3,
-        density_per_mm2: f32,
-    ) -> (f32, bool) {
-        let (mut expected, mut by_camera) = (0.0, false);
-        for (i, image) in self.images.iter().enumerate() {
-            let from_here = i == number;
-            if !from_here && !image.shows(seen.position_mm, self.object) {
+            let r = self.kernel.at_mm(seen.position_mm.distance(self.middle_mm)).truncate();
+            if r == Vec3::ZERO || before.iter().any(|image| image.shows(&seen, self.object)) {
                 continue;
             }
-            by_camera |= i == 0;
-            let (plane_mm, density) = if from_here {
-                (plane_mm, density_per_mm2)
-            } else {
-                let Some(plane_mm) = self.on_plane(image, seen.position_mm) else { continue };
-                (plane_mm, self.kernel.density_per_mm2(plane_mm.distance(self.middle_mm)))
+            let on_body = [seen.position_mm, seen.normal];
+            let jacobian = match self.settings.jacobian {
+                true => image.view.jacobian(on_body, [plane_mm, self.normal]),
+                false => 1.0,
             };
-            let plane = [plane_mm, self.normal];
-            let jacobian = image.view.jacobian([seen.position_mm, seen.normal], plane);
-            expected += density / if self.settings.jacobian { jacobian } else { 1.0 };
+            sum += r * seen.irradiance_w_per_m2 * (jacobian / place.density_per_mm2);
         }
-        (expected.max(f32::MIN_POSITIVE), by_camera)
-    }
-
-    /// Where the view line through a place on the body meets the plane.
-    fn on_plane(&self, image: &IrradianceImage, body_mm: Vec3) -> Option<Vec3> {
-        let dir = image.view.dir_at(body_mm);
-        let cos = self.normal.dot(dir);
-        (cos.abs() > 1e-4).then(|| body_mm + dir * (self.normal.dot(self.middle_mm - body_mm) / cos))
+        // Lights look for what the camera misses: what they miss as well is dark.
+        let counts = self.settings.count == SampleCount::Valid && number == 0 && valid > 0;
+        if counts { sum * (places.len() as f32 / valid as f32) } else { sum }
     }
 }
 
@@ -250,13 +218,11 @@ impl Inside for Sampled<'_> {
             kernel,
             object: place.object_number,
             middle_mm: place.point.position_mm,
-            normal: place.point.normal,
+            // The plane of the triangle: what is seen around the point lies on it, too.
+            normal: place.point.flat_normal,
         };
         let places = kernel.places_of(place.sample);
-        let images = 0..self.images.len();
-        images.map(|number| gathering.from_image(number, places)).fold(Exitance::default(), |a, b| Exitance {
-            local: a.local + b.local,
-            transmitted: a.transmitted + b.transmitted,
-        })
+        let of_lights = (1..self.images.len()).map(|number| gathering.from_image(number, places));
+        Exitance { local: gathering.from_image(0, places), transmitted: of_lights.sum() }
     }
 }

@@ -22,7 +22,7 @@ pub struct Cost {
 
 /// Reads of textures by one invocation of every entry point but those of vertices, counted in its source: one light, as many
 /// Gaussians as skin has at a size, loops as long as for most texels, the default bloom of 1080 rows.
-pub const TAPS: [(&str, u64); 27] = [
+pub const TAPS: [(&str, u64); 30] = [
     ("deform_vertices", 0),
     ("stretch_at_vertices", 0),
     ("unroll", 2),
@@ -37,6 +37,9 @@ pub const TAPS: [(&str, u64); 27] = [
     ("lay_taps", 15),
     ("blur", 11),
     ("halve", 9),
+    ("begin_blur", 11),
+    ("blur_seven", 17),
+    ("come_through", 13),
     ("gather", 40),
     ("mark_thin", 176),
     ("transmit", 130),

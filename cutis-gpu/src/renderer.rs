@@ -3,10 +3,11 @@
 use crate::passes::Passes;
 use crate::passes::inside::Inside;
 use crate::scene::SceneError;
+use crate::scene::slides::Slides;
 use crate::{Adapters, Gpu, GpuError, GpuScene};
 use cutis_render::lit_scene::warnings;
 use cutis_render::{Frame, PassTime, Progress, RenderError, Renderer, Settings, TechniqueName};
-use cutis_scene::{Light, Scene};
+use cutis_scene::Scene;
 use std::time::Instant;
 
 /// Draws on a graphics processor.
@@ -43,11 +44,9 @@ impl GpuRenderer {
     /// Finds out whether a scene can be drawn here.
     ///
     /// # Errors
-    /// If a light is a projector: its image is known to the processor only.
+    /// If projectors throw more than a device takes.
     pub fn check(scene: &Scene) -> Result<(), GpuError> {
-        let projector = scene.lights.iter().position(|light| matches!(light, Light::Projector(_)));
-        projector
-            .map_or(Ok(()), |l| Err(GpuError::Unknown { what: format!("light {}, a projector,", l + 1) }))
+        Slides::check(scene)
     }
 
     /// Uploads a scene, ready to be drawn again and again.
@@ -60,7 +59,6 @@ impl GpuRenderer {
         settings: &Settings,
         progress: &dyn Progress,
     ) -> Result<GpuScene, SceneError> {
-        Self::check(scene)?;
         GpuScene::new(&self.gpu, &self.passes, scene, settings, progress)
     }
 
@@ -80,7 +78,7 @@ impl GpuRenderer {
         let pixels = ready.picture(&self.gpu)?;
         let layers = ready.layers(&self.gpu, &self.passes, &settings.aovs, settings.aov_space)?;
         let reading = PassTime { name: "read back".to_owned(), time: start.elapsed() };
-        let mut told = warnings(scene);
+        let mut told = warnings(scene, settings.technique);
         told.extend(ready.shared.warnings.iter().cloned());
         if settings.diffusion_report {
             told.push("the report on the diffusion is made by the processor only: --backend cpu".to_owned());

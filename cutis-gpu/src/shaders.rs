@@ -69,6 +69,18 @@ pub const TAPS: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "passes/taps.w
 pub const BLUR: &str = wgsl!("lib/tiles.wgsl", "passes/blur.wgsl");
 /// Pass `blur`: to half the size.
 pub const HALVE: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "passes/halve.wgsl");
+/// Pass `blur` of the technique `texture-blur`.
+pub const SEVEN_TAPS: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "passes/seven_taps.wgsl");
+/// Pass `transmission` of the technique `texture-blur`.
+pub const THIN_PARTS: &str = wgsl!(
+    "lib/tiles.wgsl",
+    "lib/charts.wgsl",
+    "lib/packing.wgsl",
+    "lib/lights.wgsl",
+    "lib/light_map.wgsl",
+    "lib/translucent.wgsl",
+    "passes/thin_parts.wgsl"
+);
 /// Pass `gather`.
 pub const GATHER: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "lib/levels.wgsl", "passes/gather.wgsl");
 /// Pass `transmission`.
@@ -135,7 +147,7 @@ pub fn resolve(technique: TechniqueName) -> &'static str {
 }
 
 /// All of them by name.
-pub const ALL: [(&str, &str); 20] = [
+pub const ALL: [(&str, &str); 22] = [
     ("deform", DEFORM),
     ("stretch", STRETCH),
     ("atlas", ATLAS),
@@ -147,6 +159,8 @@ pub const ALL: [(&str, &str); 20] = [
     ("taps", TAPS),
     ("blur", BLUR),
     ("halve", HALVE),
+    ("seven taps", SEVEN_TAPS),
+    ("thin parts", THIN_PARTS),
     ("gather", GATHER),
     ("transmission", TRANSMISSION),
     ("smooth", SMOOTH),

@@ -8,8 +8,9 @@ use common::{
 };
 use cutis_gpu::GpuRenderer;
 use cutis_render::{Aov, CpuRenderer, Renderer, Settings, Silent};
-use cutis_scene::{Light, Scene};
+use cutis_scene::{Light, Projector, Scene, Texels, Texture};
 use glam::Vec3;
+use std::sync::Arc;
 
 fn settings() -> Settings {
     Settings { aovs: vec![Aov::Normal, Aov::Albedo, Aov::Diffuse, Aov::Specular], ..small_frame() }
@@ -68,6 +69,59 @@ fn a_stretched_patch() {
 fn the_scanned_head() {
     let Some(scene) = scanned_head("the_scanned_head") else { return };
     same_on_both("the_scanned_head", &scene, &settings(), tolerances::SCAN);
+}
+
+/// A projector that throws red, green, blue and white above a row of greys, from so far above the middle of a scene, aside
+/// by a third of that.
+fn projector(scene: &Scene, distance_mm: f32, tan_half_height: f32) -> Light {
+    let [lo, hi] = scene.bounds_mm().expect("has points");
+    let from_middle_mm = Vec3::new(0.3, 0.2, 1.0) * distance_mm;
+    let colours = [[0.9, 0.1, 0.1, 1.0], [0.1, 0.8, 0.1, 1.0], [0.1, 0.2, 0.9, 1.0], [1.0; 4]];
+    let greys = [0.2, 0.7, 0.4, 0.9].map(|grey| [grey, grey, grey, 1.0]);
+    Light::Projector(Projector {
+        position_mm: 0.5 * (lo + hi) + from_middle_mm,
+        axes: Projector::axes(-from_middle_mm.normalize(), Vec3::new(0.2, 1.0, 0.0).normalize()),
+        tan_half_height,
+        image: Arc::new(Texture::new(4, 2, Texels::LinearF32(colours.into_iter().chain(greys).collect()))),
+        intensity_w_per_sr: Vec3::new(1.0, 0.9, 0.8) * (1e-3 * distance_mm).powi(2),
+        radius_mm: 0.0,
+    })
+}
+
+#[test]
+fn a_patch_under_a_projector() {
+    let mut scene = patch_under_a_spot(patch(|u| 40.0 * u, |v| 40.0 * v));
+    // 28 mm by 14 mm of 40: its edges lie across the patch.
+    scene.lights = vec![projector(&scene, 200.0, 0.035)];
+    let wanted = Settings { aovs: vec![Aov::Irradiance, Aov::Specular, Aov::Diffuse], ..settings() };
+    same_on_both("a_patch_under_a_projector", &scene, &wanted, tolerances::PATCH);
+}
+
+#[test]
+fn the_built_in_head_under_two_projectors() {
+    let mut scene = head_in_the_studio();
+    // The first one in the list throws another image than the second: each reads its own.
+    scene.lights = vec![projector(&scene, 900.0, 0.08), projector(&scene, 500.0, 0.3)];
+    if let Light::Projector(first) = &mut scene.lights[0] {
+        first.image = Arc::new(Texture::new(1, 1, Texels::LinearF32(vec![[0.2, 0.4, 1.0, 1.0]])));
+        first.position_mm.x -= 500.0;
+        first.radius_mm = 10.0;
+        first.axes = Projector::axes(-first.position_mm.normalize(), Vec3::Y);
+    }
+    same_on_both("the_built_in_head_under_two_projectors", &scene, &settings(), tolerances::HEAD);
+}
+
+#[test]
+fn more_than_a_device_takes_of_projectors_is_refused_in_words() {
+    let mut scene = head_in_the_studio();
+    let image = Arc::new(Texture::new(4096, 4097, Texels::Linear8(vec![[0; 4]; 4096 * 4097])));
+    let mut lamp = projector(&scene, 500.0, 0.3);
+    if let Light::Projector(projector) = &mut lamp {
+        projector.image = image;
+    }
+    scene.lights = vec![lamp];
+    let refused = GpuRenderer::check(&scene).expect_err("is too large").to_string();
+    assert!(refused.contains("projectors throw is 16781312 texels"), "{refused}");
 }
 
 /// Share of the pixels that are dark in one frame and lit in the other.

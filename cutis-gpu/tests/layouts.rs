@@ -7,8 +7,10 @@ use cutis_gpu::passes::inside::wrap::Wrap;
 use cutis_gpu::passes::levels::{LevelSize, MAX_GAUSSIANS, MAX_SIZES};
 use cutis_gpu::passes::openness;
 use cutis_gpu::passes::resolve::{LayerKind, Wanted};
+use cutis_gpu::passes::seven_taps::SevenTaps;
 use cutis_gpu::passes::shadow::Drawn;
 use cutis_gpu::passes::shares::ShareGroup;
+use cutis_gpu::passes::thin_parts::Body;
 use cutis_gpu::passes::tone_map::{self, GpuFilm};
 use cutis_gpu::passes::transmission::{Slab, Slabs, Smoothing, TEXELS_OF_MARK};
 use cutis_gpu::passes::visibility::Group;
@@ -95,9 +97,11 @@ fn structs_of_the_scene_match_wgsl() {
             map_origin_mm,
             map_far_mm,
             map_layer,
-            pad0,
-            pad1,
-            pad2
+            slide_first,
+            slide_width,
+            slide_height,
+            slide_right,
+            tan_half_height
         ]
     );
     same_layout!(
@@ -128,6 +132,13 @@ fn structs_of_the_passes_match_wgsl() {
         shaders::VISIBILITY,
         "Group",
         [first_light, light_count, object, samples, opaque_mm, thickness_scale, pad0, pad1]
+    );
+    same_layout!(SevenTaps, shaders::SEVEN_TAPS, "SevenTaps", [all, step_texels, axis, factor]);
+    same_layout!(
+        Body,
+        shaders::THIN_PARTS,
+        "Body",
+        [deviation_mm, thickness_scale, object, many_lights, pad0, pad1]
     );
     same_layout!(ShareGroup, shaders::SHARES, "Group", [first_light, pad0, pad1, pad2]);
     same_layout!(
@@ -225,6 +236,22 @@ fn constants_match_wgsl() {
     ];
     for (source, name, value) in expected {
         assert_eq!(constant(source, name), value, "{name}");
+    }
+}
+
+#[test]
+fn images_of_projectors_are_bound_where_the_shaders_look_for_them() {
+    for source in [shaders::IRRADIANCE, shaders::SHARES, shaders::RESOLVE] {
+        let module = module(source);
+        let (_, slides) = module
+            .global_variables
+            .iter()
+            .find(|(_, v)| v.name.as_deref() == Some("slides"))
+            .expect("is there");
+        let binding = slides.binding.expect("is bound");
+        assert_eq!([binding.group, binding.binding], [0, passes::SLIDES]);
+        let others = module.global_variables.iter().filter(|(_, v)| v.binding == Some(binding));
+        assert_eq!(others.count(), 1, "nothing else is bound there");
     }
 }
 

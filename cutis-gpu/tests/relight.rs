@@ -5,8 +5,9 @@ mod common;
 use common::{head_in_the_studio, renderer};
 use cutis_gpu::{GpuRenderer, GpuScene};
 use cutis_render::{Settings, Silent};
-use cutis_scene::{Light, Pose, Scene, Wave};
+use cutis_scene::{Light, Pose, Projector, Scene, Texels, Texture, Wave};
 use glam::{Vec3, Vec4};
+use std::sync::{Arc, LazyLock};
 
 fn settings() -> Settings {
     Settings { width: 32, height: 32, samples_per_pixel: 1, irradiance_size: 64, ..Settings::default() }
@@ -20,6 +21,12 @@ fn picture(renderer: &GpuRenderer, ready: &GpuScene) -> Vec<Vec4> {
 fn whole(renderer: &GpuRenderer, scene: &Scene) -> Vec<Vec4> {
     picture(renderer, &renderer.scene(scene, &settings(), &Silent).expect("is uploaded"))
 }
+
+/// What the projector throws: red and green above blue and white.
+static SLIDE: LazyLock<Arc<Texture>> = LazyLock::new(|| {
+    let texels = vec![[1.0, 0.1, 0.1, 1.0], [0.1, 1.0, 0.1, 1.0], [0.1, 0.1, 1.0, 1.0], [1.0; 4]];
+    Arc::new(Texture::new(2, 2, Texels::LinearF32(texels)))
+});
 
 /// The head under a lamp of each kind.
 fn head() -> Scene {
@@ -43,6 +50,14 @@ fn head() -> Scene {
             outer_cone_rad: 0.4,
             radius_mm: 0.0,
         },
+        Light::Projector(Projector {
+            position_mm: Vec3::new(100.0, 50.0, 700.0),
+            axes: Projector::axes(Vec3::new(-0.14, -0.07, -1.0).normalize(), Vec3::Y),
+            tan_half_height: 0.15,
+            image: Arc::clone(&SLIDE),
+            intensity_w_per_sr: Vec3::splat(0.6),
+            radius_mm: 5.0,
+        }),
     ];
     scene
 }
@@ -61,7 +76,11 @@ fn relit() -> Scene {
                 intensity_w_per_sr.z = 1.0;
                 *outer_cone_rad = 0.5;
             }
-            Light::Projector(_) => {}
+            Light::Projector(projector) => {
+                projector.position_mm.y = -80.0;
+                projector.axes = Projector::axes(Vec3::new(-0.14, 0.11, -1.0).normalize(), Vec3::X);
+                projector.tan_half_height = 0.2;
+            }
         }
     }
     if let Some(environment) = &mut scene.environment {
@@ -107,7 +126,7 @@ fn what_takes_other_steps_is_told_and_changes_nothing() {
     let Some(renderer) = renderer("what_takes_other_steps_is_told_and_changes_nothing") else { return };
     let mut ready = renderer.scene(&head(), &settings(), &Silent).expect("is uploaded");
     let before = picture(renderer, &ready);
-    let changes: [fn(&mut Scene); 6] = [
+    let changes: [fn(&mut Scene); 7] = [
         |scene| scene.lights.truncate(2),
         |scene| scene.lights.swap(0, 1),
         // Among the objects: no map shows all of them.
@@ -120,9 +139,13 @@ fn what_takes_other_steps_is_told_and_changes_nothing() {
                 match light {
                     Light::Directional { angular_radius_rad, .. } => *angular_radius_rad = 0.0,
                     Light::Point { radius_mm, .. } | Light::Spot { radius_mm, .. } => *radius_mm = 0.0,
-                    Light::Projector(_) => {}
+                    Light::Projector(projector) => projector.radius_mm = 0.0,
                 }
             }
+        },
+        |scene| match &mut scene.lights[3] {
+            Light::Projector(projector) => projector.image = Arc::new(Texture::clone(&SLIDE)),
+            other => panic!("{other:?}"),
         },
         |scene| scene.environment = None,
         |scene| scene.environment.as_mut().expect("a studio has one").visible ^= true,

@@ -2,7 +2,7 @@
 
 use cutis_optics::{Profile, presets};
 use cutis_render::lit_scene::LitScene;
-use cutis_render::{Aov, Settings, Silent};
+use cutis_render::{Aov, Settings, Silent, TechniqueName};
 use cutis_scene::{Camera, Light, Material, Mesh, Object, ScalarMap, Scene};
 use glam::{Vec2, Vec3, Vec4};
 use std::f64::consts::TAU;
@@ -85,6 +85,46 @@ fn through(scene: &Scene) -> Vec4 {
     };
     let mut lit = LitScene::new(scene, &settings, &Silent).expect("draws");
     lit.resolve(&scene.camera, &settings, &Silent).expect("draws").layers[0].pixels[5]
+}
+
+/// Light that leaves the middle of a slab by `texture-blur`, W/m².
+fn leaves_by_texture_blur(scene: &Scene, passes: u32, depth: bool) -> Vec3 {
+    let mut settings = Settings {
+        technique: TechniqueName::TextureBlur,
+        width: 4,
+        height: 4,
+        irradiance_size: 256,
+        samples_per_pixel: 1,
+        aovs: vec![Aov::Exitance],
+        ..Settings::default()
+    };
+    settings.techniques.texture_blur.passes = passes;
+    settings.techniques.texture_blur.depth = depth;
+    let mut lit = LitScene::new(scene, &settings, &Silent).expect("draws");
+    lit.resolve(&scene.camera, &settings, &Silent).expect("draws").layers[0].pixels[5].truncate()
+}
+
+#[test]
+fn light_through_a_slab_is_in_the_map_that_texture_blur_blurs() {
+    let preset = presets::find("three-layer-skin").expect("ships inside").kernel(6).expect("is a constant");
+    for (thickness_mm, passes) in [(0.5f32, 0), (1.0, 1), (3.0, 4)] {
+        let scene = backlit(thickness_mm);
+        assert_eq!(leaves_by_texture_blur(&scene, passes, false), Vec3::ZERO, "its side is dark");
+        let leaves = leaves_by_texture_blur(&scene, passes, true);
+        for channel in 0..3 {
+            let terms = preset.channel(channel).terms;
+            let total: f64 = terms.iter().map(|t| t.weight).sum();
+            let variance_mm2 = terms.iter().map(|t| t.weight * t.variance_mm2).sum::<f64>() / total;
+            let expected = total * (-f64::from(thickness_mm) / variance_mm2.sqrt()).exp();
+            // Rays start inside, by 1e-4 mm and 2^-18 of the largest coordinate; half as much more is for rounding.
+            let step_mm = 1e-4 + f64::from(0.5 * SIDE_MM) / 262_144.0;
+            let off = f64::from(leaves[channel]) / expected - 1.0;
+            assert!(
+                off.abs() < 1.5 * step_mm / variance_mm2.sqrt(),
+                "{thickness_mm} mm, channel {channel}: {leaves} of {expected}"
+            );
+        }
+    }
 }
 
 /// Holds what came through against a slab that is so thick.

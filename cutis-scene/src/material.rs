@@ -78,6 +78,10 @@ pub struct Material {
     /// Factor on distances through the body: 1 as thick as it is, above 1 less light comes through. An artist's number,
     /// which the real geometry does not know.
     pub thickness_scale: f32,
+    /// Colours of layers under the surface, such as veins, the nearest to it first, at most [`Material::MAX_UNDER`]: each
+    /// filters light that gets so deep. Green 2004 (GPU Gems, section 16.4.1) leaves them to the future; of the techniques
+    /// `texture-blur` knows them.
+    pub under: Vec<ColourMap>,
 }
 
 impl Default for Material {
@@ -93,6 +97,7 @@ impl Default for Material {
             roughness: ScalarMap::constant(0.3),
             f0: 0.028,
             thickness_scale: 1.0,
+            under: Vec::new(),
         }
     }
 }
@@ -108,6 +113,9 @@ impl ColourMap {
 }
 
 impl Material {
+    /// Most layers under the surface.
+    pub const MAX_UNDER: usize = 8;
+
     /// Its maps, by the keys that name them in a scene file.
     pub fn maps(&self) -> [(&'static str, Option<&Arc<Texture>>); 4] {
         [
@@ -121,6 +129,7 @@ impl Material {
     /// Width or height of the largest of its maps, texels; 0 without any.
     pub fn largest_map(&self) -> u32 {
         let maps = self.maps().into_iter().filter_map(|(_, map)| map);
+        let maps = maps.chain(self.under.iter().filter_map(|layer| layer.texture.as_ref()));
         maps.map(|map| map.width().max(map.height())).max().unwrap_or(0)
     }
 

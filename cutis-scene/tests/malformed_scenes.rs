@@ -91,6 +91,24 @@ fn scene_files() {
         ("endless", scene("[material]\nthickness_scale = inf"), "must be a finite number"),
         ("nan", scene("[material]\nthickness_scale = nan"), "must be a finite number"),
         ("fat", scene("[material]\nthickness_scale = \"fat\""), "must be a number, found string"),
+        (
+            "layer",
+            scene("[material]\nunder = [{ path = \"none.png\" }]"),
+            "key `material.under[0].path`: `none.png`",
+        ),
+        ("layers", scene("[material]\nunder = \"map.png\""), "must be a list of tables"),
+        (
+            "bare-layer",
+            scene("[material]\nunder = [{ colour = [1, 1, 1] }, {}]"),
+            "`material.under[1].path`: is missing",
+        ),
+        ("bright-layer", scene("[material]\nunder = [{ colour = [1, 1.5, 1] }]"), "must be 0 to 1, got 1.5"),
+        ("strange-layer", scene("[material]\nunder = [{ color = [1, 1, 1] }]"), "did you mean `colour`?"),
+        (
+            "many-layers",
+            scene(&format!("[material]\nunder = [{}]", "{ colour = [1, 1, 1] }, ".repeat(9))),
+            "has 9 layers under the surface; at most 8",
+        ),
         ("space", scene("[material]\nnormal_space = \"world\""), "`world` is not known"),
         ("lonely", scene("[material]\nnormal_strength = 2"), "has no `normal` to apply to"),
         (

@@ -49,23 +49,37 @@ fn assert_same_map(a: Option<&Arc<Texture>>, b: Option<&Arc<Texture>>, what: &st
 
 fn assert_same_material(a: &Material, b: &Material) {
     let numbers = |m: &Material| {
-        let Material { name, scattering, albedo, albedo_mix, normal, rho_s, roughness, f0, thickness_scale } =
-            m;
+        let Material {
+            name,
+            scattering,
+            albedo,
+            albedo_mix,
+            normal,
+            rho_s,
+            roughness,
+            f0,
+            thickness_scale,
+            under,
+        } = m;
         let scalar = |map: &ScalarMap| match &map.texture {
             Some((_, channel)) => format!("{} {} {channel}", map.offset, map.gain),
             None => format!("{}", map.offset),
         };
         let relief = normal.as_ref().map(|map| (map.space, map.strength));
         format!(
-            "{name} {scattering:?} {} {albedo_mix} {relief:?} {} {} {f0} {thickness_scale}",
+            "{name} {scattering:?} {} {albedo_mix} {relief:?} {} {} {f0} {thickness_scale} {:?}",
             albedo.factor,
             scalar(rho_s),
-            scalar(roughness)
+            scalar(roughness),
+            under.iter().map(|layer| layer.factor).collect::<Vec<_>>()
         )
     };
     assert_eq!(numbers(a), numbers(b));
     for ((place, a), (_, b)) in a.maps().into_iter().zip(b.maps()) {
         assert_same_map(a, b, place);
+    }
+    for (a, b) in a.under.iter().zip(&b.under) {
+        assert_same_map(a.texture.as_ref(), b.texture.as_ref(), "under");
     }
 }
 
@@ -232,6 +246,11 @@ fn images_made_by_code_become_files() {
     let material = &mut scene.objects[0].material;
     material.albedo.texture = Some(texture(Texels::Srgb8(vec![[1, 200, 3, 255], [9, 8, 7, 255]])));
     let data = texture(Texels::Linear8(vec![[1, 2, 3, 255], [4, 5, 6, 255]]));
+    let veins = texture(Texels::Srgb8(vec![[250, 90, 80, 255], [255; 4]]));
+    material.under = vec![
+        ColourMap { factor: Vec3::new(0.9, 0.8, 0.7), texture: None },
+        ColourMap { factor: Vec3::new(1.0, 0.5, 0.25), texture: Some(veins) },
+    ];
     material.rho_s = ScalarMap { offset: 0.25, gain: 0.5, texture: Some((data.clone(), 2)) };
     material.roughness = ScalarMap { offset: 0.1, gain: 0.3, texture: Some((data, 1)) };
     let map = texture(Texels::LinearF32(vec![[0.1, 20.0, 3.0, 1.0], [0.0, 0.5, 1e-3, 1.0]]));
@@ -242,7 +261,7 @@ fn images_made_by_code_become_files() {
         visible: true,
     });
     assert_same(&scene, &there_and_back(&scene, &folder.path().join("scene.toml")));
-    assert_eq!(std::fs::read_dir(folder.path().join("scene_files")).unwrap().count(), 3, "shared maps once");
+    assert_eq!(std::fs::read_dir(folder.path().join("scene_files")).unwrap().count(), 4, "shared maps once");
 }
 
 #[test]
@@ -317,16 +336,20 @@ fn scatterings() -> impl Strategy<Value = Scattering> {
 
 fn materials() -> impl Strategy<Value = Material> {
     let shares = prop::array::uniform3(0.0..1.0f32);
-    let numbers = (scatterings(), vectors(0.0..1.0), shares, 0.0..10.0f32, 0.0..1e6f32);
-    numbers.prop_map(|(scattering, albedo, [albedo_mix, roughness, f0], rho_s, thickness_scale)| Material {
-        scattering,
-        albedo: ColourMap { factor: albedo, texture: None },
-        albedo_mix,
-        rho_s: ScalarMap::constant(rho_s),
-        roughness: ScalarMap::constant(roughness),
-        f0,
-        thickness_scale,
-        ..Material::default()
+    let layers = prop::collection::vec(vectors(0.0..1.0), 0..3);
+    let numbers = (scatterings(), vectors(0.0..1.0), shares, 0.0..10.0f32, 0.0..1e6f32, layers);
+    numbers.prop_map(|(scattering, albedo, [albedo_mix, roughness, f0], rho_s, thickness_scale, under)| {
+        Material {
+            scattering,
+            albedo: ColourMap { factor: albedo, texture: None },
+            albedo_mix,
+            rho_s: ScalarMap::constant(rho_s),
+            roughness: ScalarMap::constant(roughness),
+            f0,
+            thickness_scale,
+            under: under.into_iter().map(|factor| ColourMap { factor, texture: None }).collect(),
+            ..Material::default()
+        }
     })
 }
 

@@ -54,6 +54,7 @@ fn material_keys_arrive() {
          1.01], refractive_index = 1.3 }}\nalbedo = \"map.png\"\nalbedo_colour = [0.5, 1, 1]\nalbedo_mix = 1\n\
          normal = \"map.png\"\nnormal_space = \"object\"\nnormal_strength = 0.5\nf0 = 0.04\nroughness = 0.4\n\
          thickness_scale = 2.5\n\
+         under = [{{ colour = [1, 0.5, 0.25] }}, {{ path = \"map.png\", colour = [0.5, 1, 1] }}]\n\
          specular = {{ path = \"map.png\", channel = \"green\", offset = 0.1, gain = 2 }}\n"
     );
     let material = scene_in(folder.path(), &text).objects.remove(0).material;
@@ -66,6 +67,9 @@ fn material_keys_arrive() {
     assert!((material.rho_s.at(Vec2::ZERO) - (0.1 + 200.0 / 255.0)).abs() < 1e-6);
     assert_eq!((material.roughness.at(Vec2::ZERO), material.f0), (0.4, 0.04));
     assert_eq!(material.thickness_scale, 2.5);
+    let [near, deep] = &material.under[..] else { panic!("two layers") };
+    assert_eq!(near.at(Vec2::ZERO), Vec3::new(1.0, 0.5, 0.25));
+    assert_eq!(deep.at(Vec2::ZERO), material.albedo.at(Vec2::ZERO), "the same map, the same colour");
 }
 
 #[test]

@@ -58,3 +58,14 @@ fn blend_halved(map: texture_2d_array<f32>, halvings: u32, layer: u32, texels: A
         + textureLoad(map, vec2i(texels.first.x, texels.last.y), layer, halvings) * weights.z
         + textureLoad(map, texels.last, layer, halvings) * weights.w;
 }
+
+/// The first of the four texels from `corner` on that belongs to the chart: those under one of half the size.
+fn first_texel_under(charts: texture_2d<u32>, chart: u32, corner: vec2i) -> vec2i {
+    for (var i = 0; i < 4; i++) {
+        let texel = corner + vec2i(i & 1, i >> 1u);
+        if textureLoad(charts, texel, 0).x == chart {
+            return texel;
+        }
+    }
+    return corner;
+}

@@ -3,13 +3,14 @@
 const DIRECTIONAL: u32 = 0u;
 const POINT: u32 = 1u;
 const SPOT: u32 = 2u;
+const PROJECTOR: u32 = 3u;
 /// In place of a layer: the light has no shadow map.
 const NO_MAP: u32 = 0xffffffffu;
 
 struct Light {
     position_mm: vec3f,
     kind: u32,
-    /// Towards the light if it is directional, along its axis if it is a spot.
+    /// Towards the light if it is directional, along its axis if it is a spot or a projector.
     dir: vec3f,
     /// Radius in mm, or the tangent of the angular radius.
     extent: f32,
@@ -26,10 +27,18 @@ struct Light {
     map_origin_mm: vec3f,
     map_far_mm: f32,
     map_layer: u32,
-    pad0: u32,
-    pad1: u32,
-    pad2: u32,
+    /// Number of the first texel of a projector's image, and its size in texels.
+    slide_first: u32,
+    slide_width: u32,
+    slide_height: u32,
+    /// The image's axis to the right as it leaves the lens.
+    slide_right: vec3f,
+    /// Tangent of half its vertical angle.
+    tan_half_height: f32,
 }
+
+/// Images of all projectors, linear: red and green in x, blue in y, as halves of single precision. All passes bind it here.
+@group(0) @binding(29) var<storage, read> slides: array<vec2u>;
 
 struct LightSample {
     dir_to_light: vec3f,
@@ -54,11 +63,50 @@ fn sample_light(l: u32, point_mm: vec3f) -> LightSample {
     if kind == SPOT {
         irradiance *= spot_falloff(dot(lights[l].dir, -dir_to_light), lights[l].cos_inner, lights[l].cos_outer);
     }
+    if kind == PROJECTOR {
+        irradiance *= slide_filter(l, -dir_to_light);
+    }
     return LightSample(dir_to_light, distance_mm, irradiance);
+}
+
+/// The direction alone, for passes that need no image of a projector for it.
+fn dir_to_light(l: u32, point_mm: vec3f) -> vec3f {
+    if lights[l].kind == DIRECTIONAL {
+        return lights[l].dir;
+    }
+    let to_light = lights[l].position_mm - point_mm;
+    return to_light / max(length(to_light), 1e-30);
 }
 
 fn spot_falloff(cos_axis: f32, cos_inner: f32, cos_outer: f32) -> f32 {
     // The specification's own floor for cones that coincide.
     let ramp = clamp((cos_axis - cos_outer) / max(cos_inner - cos_outer, 1e-3), 0.0, 1.0);
     return ramp * ramp;
+}
+
+/// What the image of a projector lets through in a direction that light travels; black beside the image and behind the lens.
+fn slide_filter(l: u32, dir_travel: vec3f) -> vec3f {
+    let right = lights[l].slide_right;
+    let along = lights[l].dir;
+    let z = dot(along, dir_travel);
+    let size = vec2f(f32(lights[l].slide_width), f32(lights[l].slide_height));
+    // From -1 to 1 over the image.
+    let on_image = vec2f(dot(right, dir_travel) * size.y / size.x, -dot(cross(right, along), dir_travel));
+    let place = on_image / (z * lights[l].tan_half_height);
+    if z <= 0.0 || max(abs(place.x), abs(place.y)) > 1.0 {
+        return vec3f(0.0);
+    }
+    // The outermost half texel is held.
+    let p = clamp((0.5 + 0.5 * place) * size - 0.5, vec2f(0.0), size - 1.0);
+    let first = vec2u(p);
+    let last = min(first + 1u, vec2u(size) - 1u);
+    let f = p - floor(p);
+    let upper = mix(slide_texel(l, first.x, first.y), slide_texel(l, last.x, first.y), f.x);
+    let lower = mix(slide_texel(l, first.x, last.y), slide_texel(l, last.x, last.y), f.x);
+    return mix(upper, lower, f.y);
+}
+
+fn slide_texel(l: u32, x: u32, y: u32) -> vec3f {
+    let packed = slides[lights[l].slide_first + y * lights[l].slide_width + x];
+    return vec3f(unpack2x16float(packed.x), unpack2x16float(packed.y).x);
 }

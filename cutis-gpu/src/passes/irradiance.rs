@@ -3,7 +3,7 @@
 use crate::Gpu;
 use crate::map::{Map, View};
 use crate::passes::atlas::AtlasMaps;
-use crate::passes::{Samplers, over_charts};
+use crate::passes::{SLIDES, Samplers, over_charts};
 use crate::pipeline::{Blueprint, Bound, Pipeline};
 use crate::scene::charts::ChartTexture;
 use crate::scene::environment::EnvironmentMaps;
@@ -19,6 +19,8 @@ pub struct IrradianceInputs<'a> {
     pub samplers: &'a Samplers,
     /// All lights.
     pub lights: &'a wgpu::Buffer,
+    /// What projectors among them throw.
+    pub slides: &'a wgpu::Buffer,
     /// What the surface is made of.
     pub material: &'a MaterialMaps,
     /// The filtered environment.
@@ -79,6 +81,7 @@ impl IrradiancePass {
             (16, Bound::Sampler(&samplers.linear)),
             (17, Bound::Sampler(&samplers.repeating)),
             (18, Bound::Sampler(&samplers.around_sky)),
+            (SLIDES, Bound::Buffer(inputs.slides)),
         ];
         over_charts(gpu, &self.pipeline, inputs.charts, &bound, &[target], false)
     }

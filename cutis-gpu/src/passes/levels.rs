@@ -5,6 +5,7 @@ use crate::Gpu;
 use crate::map::{Map, Pyramid, View};
 use crate::scene::charts::ChartTexture;
 use bytemuck::{Pod, Zeroable};
+use cutis_render::passes::blur::Widening;
 use cutis_render::passes::diffusion::Action;
 use wgpu::TextureFormat as Format;
 
@@ -64,6 +65,14 @@ impl Levels {
         Self { all: places.into_iter().map(level).collect(), texture: pyramid.array }
     }
 
+    /// A texture for a light map, what one blur makes of it, and the light map once more: a share of it may leave unblurred.
+    pub fn of_one_blur(gpu: &Gpu, charts: &[ChartTexture], layers: u32) -> Self {
+        let widening = Widening { from_mm2: 0.0, to_mm2: 0.0, saved_texel2: 0.0 };
+        let mut levels = Self::new(gpu, charts, layers, &[Action::Step(widening), Action::Keep]);
+        levels.all.push(levels.all[0].clone());
+        levels
+    }
+
     /// The Gaussians by the sizes of their levels, the largest first. The first entry is of full size and may be empty.
     pub fn sizes(&self) -> Vec<LevelSize> {
         let mut sizes = vec![LevelSize::zeroed()];
@@ -104,7 +113,6 @@ fn places(actions: &[Action]) -> (Vec<Place>, Vec<usize>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use cutis_render::passes::blur::Widening;
 
     #[test]
     fn levels_of_one_size_lie_side_by_side() {

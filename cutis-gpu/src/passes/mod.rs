@@ -12,9 +12,11 @@ pub mod irradiance;
 pub mod levels;
 pub mod openness;
 pub mod resolve;
+pub mod seven_taps;
 pub mod shadow;
 pub mod shares;
 pub mod stretch;
+pub mod thin_parts;
 pub mod tone_map;
 pub mod transmission;
 pub mod visibility;
@@ -29,6 +31,9 @@ use crate::step::{Draw, Step};
 pub const TILE_TEXELS: usize = 16;
 /// Lights that are looked at together: as many as a texel has channels.
 pub const LIGHTS_TOGETHER: usize = 4;
+
+/// Where `lib/lights.wgsl` has the images of projectors bound.
+pub const SLIDES: u32 = 29;
 
 /// Everything that is compiled once.
 #[derive(Debug)]
@@ -53,6 +58,10 @@ pub struct Passes {
     pub shares: shares::SharesPass,
     /// Pass `blur`.
     pub diffusion: diffusion::DiffusionPass,
+    /// Pass `blur` of the technique `texture-blur`.
+    pub seven_taps: seven_taps::SevenTapsPass,
+    /// Pass `transmission` of the technique `texture-blur`.
+    pub thin_parts: thin_parts::ThinPartsPass,
     /// Pass `gather`.
     pub gather: gather::GatherPass,
     /// Pass `transmission`.
@@ -81,6 +90,8 @@ impl Passes {
             irradiance: irradiance::IrradiancePass::new(gpu),
             shares: shares::SharesPass::new(gpu),
             diffusion: diffusion::DiffusionPass::new(gpu, &samplers),
+            seven_taps: seven_taps::SevenTapsPass::new(gpu),
+            thin_parts: thin_parts::ThinPartsPass::new(gpu),
             gather: gather::GatherPass::new(gpu),
             transmission: transmission::TransmissionPass::new(gpu),
             resolve: resolve::ResolvePass::new(gpu),

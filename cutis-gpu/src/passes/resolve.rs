@@ -3,8 +3,8 @@
 
 use crate::Gpu;
 use crate::map::Map;
-use crate::passes::Samplers;
 use crate::passes::levels::Level;
+use crate::passes::{SLIDES, Samplers};
 use crate::pipeline::{Binding, Blueprint, Bound, Pipeline};
 use crate::scene::charts::ChartTexture;
 use crate::scene::environment::EnvironmentMaps;
@@ -75,6 +75,8 @@ pub struct ResolveInputs<'a> {
     pub camera: &'a wgpu::Buffer,
     /// All lights.
     pub lights: &'a wgpu::Buffer,
+    /// What projectors among them throw.
+    pub slides: &'a wgpu::Buffer,
     /// The filtered environment.
     pub environment: &'a EnvironmentMaps,
     /// The object's mesh.
@@ -260,6 +262,7 @@ fn bind(gpu: &Gpu, pipeline: &Pipeline, inputs: &ResolveInputs) -> Binding {
         (19, Bound::Sampler(&samplers.linear)),
         (20, Bound::Sampler(&samplers.repeating)),
         (21, Bound::Sampler(&samplers.around_sky)),
+        (SLIDES, Bound::Buffer(inputs.slides)),
     ];
     bound.extend_from_slice(&inputs.inside);
     pipeline.bind(gpu, 0, &bound)

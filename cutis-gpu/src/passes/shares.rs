@@ -3,7 +3,7 @@
 use crate::Gpu;
 use crate::map::View;
 use crate::passes::irradiance::IrradianceInputs;
-use crate::passes::over_charts;
+use crate::passes::{SLIDES, over_charts};
 use crate::pipeline::{Blueprint, Bound, Pipeline};
 use crate::shaders;
 use crate::step::Step;
@@ -59,6 +59,7 @@ impl SharesPass {
             (9, Bound::Texture(inputs.material.roughness.view())),
             (10, Bound::Sampler(&inputs.samplers.linear)),
             (11, Bound::Sampler(&inputs.samplers.repeating)),
+            (SLIDES, Bound::Buffer(inputs.slides)),
         ];
         over_charts(gpu, &self.pipeline, inputs.charts, &bound, &[target], false)
     }

@@ -49,7 +49,7 @@ struct Under {
 
 fn under(texel: vec2i) -> Under {
     let chart = textureLoad(charts, texel, 1).x;
-    let fine = point_under(chart, 2 * texel);
+    let fine = first_texel_under(charts, chart, 2 * texel);
     return Under(chart, fine, (vec2f(fine) + 0.5) / vec2f(textureDimensions(places)));
 }
 
@@ -72,7 +72,7 @@ fn mark_thin(@builtin(position) position: vec4f) -> @location(0) vec4f {
     loop {
         let texel = corner + vec2i(i % TEXELS_OF_MARK, i / TEXELS_OF_MARK);
         let chart = textureLoad(charts, texel, 1).x;
-        let fine = point_under(chart, 2 * texel);
+        let fine = first_texel_under(charts, chart, 2 * texel);
         var l = 0u;
         loop {
             most = max(most, select(most_through(l, fine), 0.0, chart == NO_CHART));
@@ -121,7 +121,7 @@ fn transmit(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var sum = vec3f(0.0);
     var l = 0u;
     loop {
-        let dir_to_light = sample_light(l, point_mm).dir_to_light;
+        let dir_to_light = dir_to_light(l, point_mm);
         let there = light_facing_surface(map_of(l), depths, surfaces, point_mm, slabs.object);
         let comes_through = there.found && !there.itself && dot(normal, dir_to_light) < 0.0;
         let apart_mm = max(apart_mm(here.uv, normal, here.chart, there) - uncertain_mm(there, dir_to_light), 0.0);
@@ -157,17 +157,6 @@ fn through_all(l: u32, here: Under, there: LightFacing, apart_mm: f32) -> vec3f 
         }
     }
     return sum;
-}
-
-/// The first texel of the chart under one of half the size.
-fn point_under(chart: u32, corner: vec2i) -> vec2i {
-    for (var i = 0; i < 4; i++) {
-        let texel = corner + vec2i(i & 1, i >> 1u);
-        if textureLoad(charts, texel, 0).x == chart {
-            return texel;
-        }
-    }
-    return corner;
 }
 
 /// Layer of a level, told by its first one, that holds the distance towards a light. With one light it rides in alpha, with

@@ -65,16 +65,16 @@ fn visibility_at(texel: vec2i, any_extent: bool) -> Visibility {
     var i = 0u;
     loop {
         let l = group_of.first_light + i;
-        let towards = sample_light(l, point_mm);
+        let dir_to_light = dir_to_light(l, point_mm);
         let map = map_of(l);
-        let faces = dot(normal, towards.dir_to_light) >= 0.0;
+        let faces = dot(normal, dir_to_light) >= 0.0;
         if faces {
             let shift = random2(vec2u(texel), STREAM + l);
             let extent = select(0.0, lights[l].extent, any_extent);
             result.seen[i] = visible_fraction(map, extent, own, shift);
         }
         if !faces {
-            result.distance_mm[i] = distance_mm(map, point_mm, normal, towards.dir_to_light);
+            result.distance_mm[i] = distance_mm(map, point_mm, normal, dir_to_light);
         }
         continuing {
             i++;
@@ -100,7 +100,7 @@ fn count_places(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var i = 0u;
     loop {
         let l = group_of.first_light + i;
-        if dot(normal, sample_light(l, point_mm).dir_to_light) >= 0.0 {
+        if dot(normal, dir_to_light(l, point_mm)) >= 0.0 {
             tried += places_tried(map_of(l), lights[l].extent, own, random2(vec2u(texel), STREAM + l));
         }
         continuing {

@@ -4,9 +4,10 @@ use crate::Gpu;
 use crate::map::{Map, Pyramid, View};
 use crate::passes::TILE_TEXELS;
 use cutis_render::passes::atlas::{Atlas, ChartMap, NO_CHART};
+use cutis_render::passes::seven_taps::FARTHEST_TEXELS;
 
-/// Texels of a chart that are counted to either side at most.
-const MAX_REACH: u16 = 255;
+/// Texels of a chart that are counted to either side at most: two of these numbers share 16 bits.
+const MAX_REACH: u16 = FARTHEST_TEXELS;
 /// In place of a chart: none.
 const NO_CODE: u16 = u16::MAX;
 

@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use cutis_render::prepare::LightView;
-use cutis_scene::{Light, Object};
+use cutis_scene::{Light, Object, Projector};
 use glam::Vec3;
 
 /// In place of a layer: the light has no shadow map.
@@ -13,9 +13,9 @@ pub const NO_MAP: u32 = u32::MAX;
 pub struct GpuLight {
     /// Position, mm.
     pub position_mm: [f32; 3],
-    /// 0 directional, 1 point, 2 spot.
+    /// 0 directional, 1 point, 2 spot, 3 projector.
     pub kind: u32,
-    /// Towards the light if it is directional, along its axis if it is a spot.
+    /// Towards the light if it is directional, along its axis if it is a spot or a projector.
     pub dir: [f32; 3],
     /// Radius in mm, or the tangent of the angular radius.
     pub extent: f32,
@@ -41,12 +41,16 @@ pub struct GpuLight {
     pub map_far_mm: f32,
     /// Layer of the maps, or [`NO_MAP`].
     pub map_layer: u32,
-    /// Fills up the struct.
-    pub pad0: u32,
-    /// Fills up the struct.
-    pub pad1: u32,
-    /// Fills up the struct.
-    pub pad2: u32,
+    /// Number of the first texel of a projector's image: see [`super::slides`].
+    pub slide_first: u32,
+    /// Width of that image, texels.
+    pub slide_width: u32,
+    /// Height of it, texels.
+    pub slide_height: u32,
+    /// Its axis to the right as it leaves the lens.
+    pub slide_right: [f32; 3],
+    /// Tangent of half its vertical angle.
+    pub tan_half_height: f32,
 }
 
 impl GpuLight {
@@ -67,9 +71,11 @@ impl GpuLight {
         map_origin_mm: [0.0; 3],
         map_far_mm: 0.0,
         map_layer: NO_MAP,
-        pad0: 0,
-        pad1: 0,
-        pad2: 0,
+        slide_first: 0,
+        slide_width: 0,
+        slide_height: 0,
+        slide_right: [0.0; 3],
+        tan_half_height: 0.0,
     };
 
     /// A light over some objects, whose map is layer `layer`. The map is left out if the light stands among them.
@@ -98,8 +104,23 @@ impl GpuLight {
 fn without_map(light: &Light) -> GpuLight {
     let mut gpu = GpuLight { map_layer: NO_MAP, ..GpuLight::zeroed() };
     match *light {
-        // Refused before anything is uploaded: see GpuRenderer::check.
-        Light::Projector(_) => {}
+        Light::Projector(Projector {
+            position_mm,
+            axes: [right, _, along],
+            tan_half_height,
+            ref image,
+            intensity_w_per_sr,
+            radius_mm,
+        }) => {
+            gpu.kind = 3;
+            gpu.position_mm = position_mm.to_array();
+            gpu.dir = along.to_array();
+            gpu.strength = intensity_w_per_sr.to_array();
+            gpu.extent = radius_mm;
+            gpu.slide_right = right.to_array();
+            gpu.tan_half_height = tan_half_height;
+            (gpu.slide_width, gpu.slide_height) = (image.width(), image.height());
+        }
         Light::Directional { dir_to_light, irradiance_w_per_m2, angular_radius_rad } => {
             gpu.dir = dir_to_light.to_array();
             gpu.strength = irradiance_w_per_m2.to_array();

@@ -11,11 +11,13 @@ pub mod lights;
 pub mod material;
 pub mod object;
 mod on_demand;
+pub mod one_blur;
 mod picture;
 pub mod posing;
 pub mod reach;
 pub mod relight;
 pub mod shared;
+pub mod slides;
 pub mod surroundings;
 
 use crate::cost::Cost;

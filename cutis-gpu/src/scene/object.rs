@@ -4,6 +4,7 @@ use super::SceneError;
 use super::charts::{ChartPyramid, surface_texture};
 use super::geometry::Geometry;
 use super::material::MaterialMaps;
+use super::one_blur;
 use super::shared::Shared;
 use crate::Gpu;
 use crate::map::{Map, View};
@@ -130,7 +131,11 @@ impl ObjectMaps {
             (&surface, &charts.sizes[0]),
             &atlas,
         ));
-        let levels = Levels::new(gpu, &charts.sizes, light_layers(shared), &plan);
+        let levels = if settings.light_inside() == TechniqueName::TextureBlur {
+            Levels::of_one_blur(gpu, &charts.sizes, light_layers(shared))
+        } else {
+            Levels::new(gpu, &charts.sizes, light_layers(shared), &plan)
+        };
         let mut maps = Self {
             visibility: visibility_map(gpu, size, shared.light_count),
             local: like_level(gpu, "local", size, &levels.all[0].light),
@@ -151,6 +156,11 @@ impl ObjectMaps {
         let shares = light.steps(&plan, &mut steps);
         if maps.technique == TechniqueName::TextureSpace {
             maps.add_spread(gpu, passes, shared, (number, texel_mm), shares.as_ref(), &mut steps);
+        }
+        if maps.technique == TechniqueName::TextureBlur {
+            let subject =
+                one_blur::Subject { object, number, atlas: &unrolled, texel_mm, shares: shares.as_ref() };
+            steps.light.extend(one_blur::steps(gpu, passes, shared, &maps, &subject, settings)?);
         }
         Ok((maps, steps))
     }
@@ -190,6 +200,7 @@ impl ObjectMaps {
             samplers: &passes.samplers,
             camera: &shared.camera,
             lights: &shared.lights,
+            slides: &shared.slides.texels,
             environment: &shared.environment,
             geometry: &self.geometry,
             material: &self.material,
@@ -237,6 +248,7 @@ impl Lighting<'_> {
         let inputs = IrradianceInputs {
             samplers: &passes.samplers,
             lights: &shared.lights,
+            slides: &shared.slides.texels,
             material: &maps.material,
             environment: &shared.environment,
             atlas: &maps.atlas,

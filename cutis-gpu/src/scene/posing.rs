@@ -6,6 +6,7 @@ use super::lights::GpuLight;
 use super::reach::Reach;
 use super::relight::are_alike;
 use super::shared::{Shared, gpu_lights};
+use super::slides::first_texels;
 use crate::{Gpu, GpuError};
 use cutis_render::prepare::light_view::bounds_mm;
 use cutis_scene::{Camera, Pose, Scene};
@@ -142,8 +143,11 @@ fn laid(scene: &Scene, shared: &Shared, lights: &[GpuLight], corners_mm: &[Vec3]
     if corners_mm.is_empty() {
         return lights.to_vec();
     }
-    let over = |(light, &layer)| GpuLight::over_points(light, corners_mm.iter().copied(), layer);
-    scene.lights.iter().zip(&shared.layers).map(over).collect()
+    let over = |((light, &layer), slide_first)| GpuLight {
+        slide_first,
+        ..GpuLight::over_points(light, corners_mm.iter().copied(), layer)
+    };
+    scene.lights.iter().zip(&shared.layers).zip(first_texels(&scene.lights)).map(over).collect()
 }
 
 fn write_lights(gpu: &Gpu, shared: &Shared, lights: &[GpuLight]) {

@@ -11,13 +11,14 @@ impl GpuScene {
     /// Lights the scene anew from the next frame on. `scene` is the one this was made from, in the pose it had then, with
     /// other lights; and with its environment turned or of another strength, but of the same map.
     ///
-    /// Tells whether it could be done. Nothing has changed where not: lights of another number or kind, one that gets or
-    /// loses its shadow map, the first or last one with an extent, and an environment that comes, goes or is hidden take a
+    /// Tells whether it could be done. Nothing has changed where not: lights of another number or kind, a projector with
+    /// another image, one that gets or loses its shadow map, the first or last one with an extent, and an environment that comes, goes or is hidden take a
     /// scene of their own.
     pub fn set_lights(&mut self, gpu: &Gpu, scene: &Scene) -> bool {
         let lights = gpu_lights(scene);
         if !self.posing.is_lit_like(&lights)
             || any_extent(&lights) != self.shared.any_extent
+            || !self.shared.slides.serve(scene)
             || !self.shared.environment.serves(scene.environment.as_ref())
         {
             return false;

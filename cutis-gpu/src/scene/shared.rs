@@ -4,6 +4,7 @@ use super::camera::GpuCamera;
 use super::environment::EnvironmentMaps;
 use super::lights::{GpuLight, NO_MAP};
 use super::relight::{any_extent, layers};
+use super::slides::{Slides, first_texels};
 use super::surroundings::Surroundings;
 use crate::passes::shadow::ShadowMaps;
 use crate::{Gpu, GpuError};
@@ -24,6 +25,8 @@ const MIN_SHADOW_SAMPLES: u32 = 16;
 pub struct Shared {
     /// [`GpuLight`] of every light.
     pub lights: wgpu::Buffer,
+    /// What projectors among them throw.
+    pub slides: Slides,
     /// How many there are, at least one: a scene without has a dark one.
     pub light_count: usize,
     /// Whether any light has an extent.
@@ -48,7 +51,7 @@ impl Shared {
     /// Uploads what a scene's objects share.
     ///
     /// # Errors
-    /// If the environment is larger than the device takes.
+    /// If the environment, or what projectors throw, is larger than the device takes.
     pub fn new(
         gpu: &Gpu,
         scene: &Scene,
@@ -61,6 +64,7 @@ impl Shared {
         let size = settings.irradiance_size.clamp(smallest, largest);
         let aspect = settings.width as f32 / settings.height as f32;
         Ok(Self {
+            slides: Slides::new(gpu, scene)?,
             light_count: lights.len().max(1),
             any_extent: any_extent(&lights),
             shadows: ShadowMaps::new(gpu, size, layers.iter().flatten().count() as u32),
@@ -78,13 +82,13 @@ impl Shared {
 /// The scene's lights; the first ones have maps, in layers without gaps.
 pub fn gpu_lights(scene: &Scene) -> Vec<GpuLight> {
     let mut next = 0;
-    let light = |light| {
+    let light = |(light, slide_first)| {
         let layer = (next < SHADOW_BUDGET as u32).then_some(next);
-        let light = GpuLight::new(light, &scene.objects, layer);
+        let light = GpuLight { slide_first, ..GpuLight::new(light, &scene.objects, layer) };
         next += u32::from(light.map_layer != NO_MAP);
         light
     };
-    scene.lights.iter().map(light).collect()
+    scene.lights.iter().zip(first_texels(&scene.lights)).map(light).collect()
 }
 
 /// All vertices, mm.

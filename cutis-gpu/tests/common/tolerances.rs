@@ -95,3 +95,5 @@ pub const fn codes_that_differ(spread: f32) -> f32 {
 /// Mismatch of light across seams: the sum of all differences over the sum of the processor's. Along a seam, where the
 /// mismatch is found, texels of both charts share one place of the taps, which have half the size.
 pub const SEAMS: f32 = 0.13;
+/// Light through a plate of parallel sides: the distance is that of a texel's middle, the rest is rounding.
+pub const PLATE: Tolerance = tolerance(0.01, 1e-3);

@@ -9,12 +9,16 @@ mod object_pass;
 mod texture_layers;
 
 use crate::frame::Frame;
+use crate::passes::blur::Fields;
+use crate::passes::diffusion::{Diffused, operator};
 use crate::passes::object_maps::ObjectMaps;
 use crate::passes::picture::picture;
 use crate::passes::resolve::Resolve;
 use crate::passes::seams::{DiffusionReport, diffusion_report};
+use crate::passes::thin_parts::come_through;
 use crate::passes::transmission::{Bodies, Transmission};
 use crate::prepare::FilteredEnvironment;
+use crate::prepare::kernel::kernel_of;
 use crate::settings::{Aov, AovSpace, Settings, TechniqueName};
 use crate::technique::{Inside, depth_absorption, image_space, texture_blur, texture_space, wrap};
 use crate::{PassTime, Progress, RenderError};
@@ -24,6 +28,7 @@ use cutis_scene::{Bvh, Camera, Material, Object, Scattering, Scene};
 pub use kernel::{chosen_kernel, opaque_mm};
 use object_pass::ObjectPass;
 use std::ops::Deref;
+use std::sync::Arc;
 
 /// Smallest irradiance texture of an object that is much smaller than the largest.
 const MIN_ATLAS: u32 = 64;
@@ -67,7 +72,7 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
         frame.diffusion_reports = lit.reports();
     }
     frame.passes = lit.take_passes();
-    frame.warnings = warnings(scene);
+    frame.warnings = warnings(scene, settings.technique);
     Ok(frame)
 }
 
@@ -87,6 +92,11 @@ impl<S: Deref<Target = Scene>> LitScene<S> {
             let pass =
                 ObjectPass { scene: &scene, settings, bvh: &bvh, environment: environment.as_ref(), object };
             maps.push(pass.run(size as usize, &mut clock, progress)?);
+            wanted(progress)?;
+        }
+        for i in 0..maps.len() {
+            let bodies = Bodies { scene: &scene, bvh: &bvh, maps: &maps };
+            maps[i].diffused = spread(bodies, i, settings, &mut clock, progress)?;
             wanted(progress)?;
         }
         let bodies = Bodies { scene: &scene, bvh: &bvh, maps: &maps };
@@ -150,6 +160,35 @@ impl<S: Deref<Target = Scene>> LitScene<S> {
     }
 }
 
+/// The light of object number `i`, spread over its texture. The light that enters the others is known already.
+fn spread(
+    bodies: Bodies,
+    i: usize,
+    settings: &Settings,
+    clock: &mut Clock,
+    progress: &dyn Progress,
+) -> Result<Diffused, RenderError> {
+    let (object, maps) = (&bodies.scene.objects[i], &bodies.maps[i]);
+    let through = if adds_thin_parts(settings) {
+        let deviation_mm =
+            clock.time("kernel", || kernel_of(&object.material, settings.gaussians))?.deviation_mm();
+        Some(clock.time("transmission", || come_through(&bodies, i, deviation_mm, progress)))
+    } else {
+        None
+    };
+    let operator = clock.time("kernel", || operator(settings, object, maps, through))?;
+    let layers = Arc::clone(&maps.diffused.levels[0].layers);
+    let fields = Fields { layers, stretch_mm: maps.stretch_mm.clone() };
+    let charts = Arc::clone(&maps.atlas.charts);
+    let variances_mm2 = &maps.kernel.variances_mm2;
+    Ok(clock.time("blur", || operator.diffuse(charts, fields, variances_mm2, progress)))
+}
+
+/// Whether light that comes through thin parts is spread with what falls in.
+pub fn adds_thin_parts(settings: &Settings) -> bool {
+    settings.light_inside() == TechniqueName::TextureBlur && settings.techniques.texture_blur.depth
+}
+
 /// What the technique knows of the light inside; seen by a camera, where that is how it looks.
 fn inside<'a>(
     lit: Lit<'a>,
@@ -162,7 +201,7 @@ fn inside<'a>(
     Ok(match lit.settings.light_inside() {
         TechniqueName::Wrap => Box::new(wrap::Wrapped::new(lit)?),
         TechniqueName::DepthAbsorption => Box::new(depth_absorption::Absorbed::new(lit)?),
-        TechniqueName::TextureBlur => Box::new(texture_blur::Blurred::new(lit)),
+        TechniqueName::TextureBlur => Box::new(texture_blur::Blurred),
         TechniqueName::ImageSpace => {
             Box::new(clock.time("irradiance image", || image_space::Sampled::new(lit, camera, progress))?)
         }
@@ -197,8 +236,8 @@ pub fn atlas_sizes(objects: &[Object], largest: u32) -> Vec<u32> {
     areas.iter().map(size).collect()
 }
 
-/// What a person should know of a scene that is drawn by this technique.
-pub fn warnings(scene: &Scene) -> Vec<String> {
+/// What a person should know of a scene that is drawn by a technique.
+pub fn warnings(scene: &Scene, technique: TechniqueName) -> Vec<String> {
     let open = scene.objects.iter().filter(|object| !object.closed).map(|object| {
         let name = &object.name;
         format!("'{name}' is not a closed surface: light that enters may find no way out, and thin parts stay dark")
@@ -208,7 +247,22 @@ pub fn warnings(scene: &Scene) -> Vec<String> {
         let validity = Dipole::new(&medium).ok()?.validity();
         (!validity.is_good()).then(|| validity.to_string())
     });
-    open.chain(invalid).collect()
+    open.chain(invalid).chain(layers_left_out(scene, technique)).collect()
+}
+
+/// Says so where layers under a surface are there that a technique does not know.
+pub fn layers_left_out(scene: &Scene, technique: TechniqueName) -> impl Iterator<Item = String> {
+    let knows = technique == TechniqueName::TextureBlur;
+    scene.objects.iter().filter(move |object| !knows && !object.material.under.is_empty()).map(
+        move |object| {
+            let (name, layers) = (&object.name, object.material.under.len());
+            let are = if layers == 1 { "layer lies" } else { "layers lie" };
+            format!(
+                "{layers} {are} under the surface of '{name}' that the technique {technique} does not know: \
+             texture-blur does"
+            )
+        },
+    )
 }
 
 /// The media of a material that is given by its coefficients.

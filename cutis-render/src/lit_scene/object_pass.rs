@@ -1,12 +1,11 @@
-//! From lights to spread irradiance: the passes that fill one object's textures.
+//! From lights to irradiance: the passes that fill one object's textures, but for those that spread its light.
 
 use super::clock::Clock;
 use super::kernel::{chosen_kernel, opaque_mm};
 use super::wanted;
 use crate::passes::ambient::Ambient;
 use crate::passes::atlas::Atlas;
-use crate::passes::blur::Fields;
-use crate::passes::diffusion::operator;
+use crate::passes::diffusion::{Diffused, Level};
 use crate::passes::half_size::{HalfSize, Rays};
 use crate::passes::irradiance::{IrradianceInputs, irradiance};
 use crate::passes::object_maps::ObjectMaps;
@@ -17,7 +16,7 @@ use crate::{Progress, RenderError};
 use cutis_scene::{Bvh, Object, Scene};
 use std::sync::Arc;
 
-/// The passes that fill one object's textures.
+/// These passes.
 pub(super) struct ObjectPass<'a> {
     pub scene: &'a Scene,
     pub settings: &'a Settings,
@@ -27,6 +26,7 @@ pub(super) struct ObjectPass<'a> {
 }
 
 impl ObjectPass<'_> {
+    /// Of the light under the surface there is only what has not been spread.
     pub fn run(
         &self,
         size: usize,
@@ -60,10 +60,8 @@ impl ObjectPass<'_> {
         };
         let lit = clock.time("irradiance", || irradiance(&inputs, progress));
         wanted(progress)?;
-        let charts = Arc::clone(&atlas.charts);
-        let fields = Fields::new(lit.layers, stretch_mm.clone());
-        let diffused = clock
-            .time("blur", || operator(settings).diffuse(charts, fields, &kernel.variances_mm2, progress));
+        let sharp = Level { charts: Arc::clone(&atlas.charts), layers: Arc::new(lit.layers) };
+        let diffused = Diffused { levels: vec![sharp] };
         Ok(ObjectMaps {
             atlas,
             half_charts,

@@ -83,6 +83,13 @@ impl Atlas {
         (s.triangle != NO_CHART).then(|| object.surface_point(s.triangle, s.b1, s.b2))
     }
 
+    /// Texture coordinates of that surface.
+    pub fn uv_under(&self, object: &Object, texel: usize) -> Option<Vec2> {
+        let s = self.surface[texel];
+        let between = |[a, b, c]: [Vec2; 3]| a + (b - a) * s.b1 + (c - a) * s.b2;
+        (s.triangle != NO_CHART).then(|| between(object.mesh.corner_uvs(s.triangle as usize)))
+    }
+
     /// The surface under a texel of a smaller map that belongs to `chart`: `times` as wide as one of these. Of the texels
     /// of that chart the most central one stands for all.
     pub fn point_under(

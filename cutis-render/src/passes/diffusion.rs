@@ -1,13 +1,16 @@
 //! Diffusion of light over the unrolled surface: from irradiance to one map per Gaussian.
 //!
 //! An operator takes the fields at full size and gives back a [`Diffused`]; what is done in between is its own affair.
-//! There is one operator so far, [`Separable`] (d'Eon, Luebke & Enderton 2007, section 5.1).
+//! There are two: [`Separable`] (d'Eon, Luebke & Enderton 2007, section 5.1) and [`SevenTaps`] (Green 2004, section 16.4).
 
+use crate::RenderError;
 use crate::passes::atlas::{ChartMap, NO_CHART};
 use crate::passes::blur::{Axis, Fields, Widening, blur};
+use crate::passes::object_maps::ObjectMaps;
 use crate::passes::seven_taps::SevenTaps;
 use crate::progress::Progress;
 use crate::settings::{Diffusion, Settings, TechniqueName};
+use cutis_scene::Object;
 use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -55,15 +58,24 @@ impl Diffused {
     }
 }
 
-/// The operator that light is spread by.
-pub fn operator(settings: &Settings) -> Box<dyn DiffusionOperator> {
-    match (settings.technique, settings.diffusion) {
+/// The operator that the light of an object is spread by. `through` is light that came through its thin parts, at half the
+/// size, where the technique adds that before it spreads anything.
+///
+/// # Errors
+/// If it follows from the material, and that has no kernel.
+pub fn operator<'a>(
+    settings: &Settings,
+    object: &'a Object,
+    maps: &'a ObjectMaps,
+    through: Option<Vec<Vec4>>,
+) -> Result<Box<dyn DiffusionOperator + 'a>, RenderError> {
+    Ok(match (settings.technique, settings.diffusion) {
         (TechniqueName::TextureBlur, Diffusion::Separable) => {
-            Box::new(SevenTaps::new(settings.techniques.texture_blur))
+            Box::new(SevenTaps::new(object, maps, through, settings)?)
         }
         // Without diffusion the kernel is one Gaussian of no width, which any operator leaves as it is.
         _ => Box::new(Separable),
-    }
+    })
 }
 
 /// Seven-tap blurs along u and v, each Gaussian from the one before, wide ones in smaller textures.

@@ -17,5 +17,6 @@ pub mod smooth;
 pub mod specular;
 pub mod stretch;
 pub mod tap;
+pub mod thin_parts;
 pub mod transmission;
 pub mod visibility;

@@ -109,7 +109,7 @@ impl Bodies<'_> {
     }
 
     /// Share of a light in what falls on its light-facing side, so that light counted once is not counted again.
-    fn share(&self, l: usize, there: &LightFacing) -> f32 {
+    pub fn share(&self, l: usize, there: &LightFacing) -> f32 {
         let maps = &self.maps[there.object];
         match maps.shares.get(l) {
             Some(shares) => maps.atlas.charts.sample(shares, there.uv, there.chart).unwrap_or(0.0),

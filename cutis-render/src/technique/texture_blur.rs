@@ -1,13 +1,14 @@
 //! One blur of the light map in texture space, wider for red than for green and blue (Green 2004, GPU Gems, chapter 16,
 //! section 16.4, listings 16-6 and 16-7).
 //!
-//! The light map is unwrapped and lit as for `texture-space`; [`crate::passes::seven_taps`] blurs it; what leaves is a blend
-//! of the blurred and the sharp map, times the colour of the body.
-//! Not modelled: distances. The blur is as wide as so many texels, whatever these are on the body.
+//! The light map is unwrapped and lit as for `texture-space`; light that comes through thin parts may be added
+//! ([`crate::passes::thin_parts`]); [`crate::passes::seven_taps`] blurs it, and layers under the surface filter it on the way
+//! ([`cutis_scene::Material::under`]). What leaves is a blend of that and of the sharp map, which none of this has touched,
+//! times the colour of the body.
+//! Not modelled: distances along the surface. The blur is as wide as so many texels, whatever these are on the body.
 
 use super::{Exitance, Inside};
 use crate::RenderError;
-use crate::lit_scene::Lit;
 use crate::passes::resolve::Place;
 use crate::settings::within;
 use glam::Vec3;
@@ -91,23 +92,13 @@ impl TextureBlurSettings {
     }
 }
 
-/// Light that was blurred in texture space.
-pub struct Blurred<'a> {
-    lit: Lit<'a>,
-}
+/// Light that was blurred in texture space; weights say how much of it is blended with how much of the sharp map.
+pub struct Blurred;
 
-impl<'a> Blurred<'a> {
-    /// Of a scene whose maps have been blurred.
-    pub fn new(lit: Lit<'a>) -> Self {
-        Self { lit }
-    }
-}
-
-impl Inside for Blurred<'_> {
+impl Inside for Blurred {
     fn exitance(&self, place: &Place) -> Exitance {
-        let (maps, uv) = (place.maps, place.point.uv);
-        let at = |level| maps.diffused.sample(level, 0, uv, place.chart).truncate();
-        let light = at(0).lerp(at(1), self.lit.settings.techniques.texture_blur.blend);
-        Exitance { local: light * maps.kernel.total(), transmitted: Vec3::ZERO }
+        let maps = place.maps;
+        let local = maps.diffused.weighted_sum(&maps.kernel.weights, place.point.uv, place.chart);
+        Exitance { local, transmitted: Vec3::ZERO }
     }
 }

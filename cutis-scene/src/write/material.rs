@@ -5,7 +5,7 @@ use super::files::Files;
 use super::text::{double, list, number, quoted, vector};
 use crate::read::MESH_PREFIX;
 use crate::source::{ObjectSource, TextureSource};
-use crate::{Material, NormalSpace, ScalarMap, Scattering, SceneError, Texture};
+use crate::{ColourMap, Material, NormalSpace, ScalarMap, Scattering, SceneError, Texture};
 use cutis_optics::Medium;
 use glam::Vec3;
 use std::sync::Arc;
@@ -52,7 +52,17 @@ pub(super) fn keys(
     put("roughness", scalar(&material.roughness, source, files)?);
     put("f0", number(material.f0));
     put("thickness_scale", number(material.thickness_scale));
+    if !material.under.is_empty() {
+        let layers = material.under.iter().map(|layer| under(layer, source, files));
+        put("under", list(layers.collect::<Result<Vec<_>, _>>()?));
+    }
     Ok(text)
+}
+
+fn under(layer: &ColourMap, source: &ObjectSource, files: &mut Files) -> Result<String, SceneError> {
+    let colour = format!("colour = {}", vector(layer.factor));
+    let Some(map) = &layer.texture else { return Ok(format!("{{ {colour} }}")) };
+    Ok(format!("{{ path = {}, {colour} }}", quoted(&picture(map, source, true, files)?)))
 }
 
 fn medium(media: &[Medium; 3]) -> String {

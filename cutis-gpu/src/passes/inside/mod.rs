@@ -25,7 +25,7 @@ pub enum Inside {
 impl Inside {
     /// Whether a technique is drawn here.
     pub fn knows(technique: TechniqueName) -> bool {
-        matches!(technique, TechniqueName::TextureSpace | TechniqueName::Wrap)
+        matches!(technique, TechniqueName::TextureSpace | TechniqueName::TextureBlur | TechniqueName::Wrap)
     }
 
     /// Uploads what the technique of the settings knows of an object, whose diffuse reflectance is `colour`.

@@ -9,7 +9,8 @@ mod key;
 
 use crate::film::Checkpoint;
 use crate::frame::{Frame, PassTime};
-use crate::settings::{Aov, AovSpace, Settings};
+use crate::lit_scene::layers_left_out;
+use crate::settings::{Aov, AovSpace, Settings, TechniqueName};
 use crate::transport::path::Transport;
 use crate::{Progress, RenderError};
 use cutis_scene::closing::{check_closed, close_holes};
@@ -66,7 +67,7 @@ fn warnings(scene: &Scene) -> Vec<String> {
         let (name, scale) = (&object.name, object.material.thickness_scale);
         format!("the truth takes '{name}' as thick as it is: it does not know the thickness scale of {scale}")
     });
-    words.collect()
+    words.chain(layers_left_out(scene, TechniqueName::Truth)).collect()
 }
 
 /// Takes samples until there are enough, or the noise is low enough.

@@ -9,7 +9,7 @@ use cutis_optics::{Medium, RgbGaussianSum};
 use glam::Vec3;
 use std::sync::Arc;
 
-const KNOWN: [&str; 13] = [
+const KNOWN: [&str; 14] = [
     "preset",
     "medium",
     "kernel",
@@ -23,6 +23,7 @@ const KNOWN: [&str; 13] = [
     "roughness",
     "f0",
     "thickness_scale",
+    "under",
 ];
 
 /// Most Gaussians of a kernel.
@@ -43,6 +44,7 @@ pub(super) struct Change {
     roughness: Option<ScalarMap>,
     f0: Option<f32>,
     thickness_scale: Option<f32>,
+    under: Option<Vec<ColourMap>>,
 }
 
 impl Change {
@@ -64,6 +66,7 @@ impl Change {
         set(&mut material.f0, &self.f0);
         set(&mut material.thickness_scale, &self.thickness_scale);
         set(&mut material.normal, &self.normal);
+        set(&mut material.under, &self.under);
     }
 }
 
@@ -92,7 +95,35 @@ pub(super) fn read(keys: &Keys, own: &Material, context: &mut Context) -> Result
         roughness: scalar(keys, "roughness", 0.0..=1.0, ScalarMap::measured_roughness, images)?,
         f0: keys.number_in("f0", 0.0..=1.0)?,
         thickness_scale: keys.number_in("thickness_scale", 0.0..=MAX_THICKNESS_SCALE)?,
+        under: under(keys, images)?,
     })
+}
+
+/// A list of `{ path, colour }`, the layer nearest to the surface first.
+fn under(keys: &Keys, images: &mut Images) -> Result<Option<Vec<ColourMap>>, SceneError> {
+    if !keys.has("under") {
+        return Ok(None);
+    }
+    let layers = keys.tables("under")?;
+    if layers.len() > Material::MAX_UNDER {
+        let reason =
+            format!("has {} layers under the surface; at most {}", layers.len(), Material::MAX_UNDER);
+        return Err(keys.error("under", reason));
+    }
+    layers.iter().map(|layer| layer_under(layer, images)).collect::<Result<_, _>>().map(Some)
+}
+
+fn layer_under(keys: &Keys, images: &mut Images) -> Result<ColourMap, SceneError> {
+    keys.only(&["path", "colour"])?;
+    let colour = keys.vector_in("colour", 0.0..=1.0)?;
+    let texture = match keys.string("path")? {
+        Some(text) => Some(texture(keys, "path", text, ColourSpace::Colour, images)?),
+        None if colour.is_none() => {
+            return Err(keys.error("path", "is missing: a layer needs `path`, `colour` or both"));
+        }
+        None => None,
+    };
+    Ok(ColourMap { factor: colour.unwrap_or(Vec3::ONE), texture })
 }
 
 fn scattering(keys: &Keys) -> Result<Option<Scattering>, SceneError> {

@@ -37,7 +37,7 @@ impl Kept {
         let Settings { irradiance_size, shadow_samples, .. } = subject.settings;
         let scene = Arc::new(subject.look.applied_to(subject.scene)?);
         Ok(Self {
-            warnings: warnings(&scene),
+            warnings: warnings(&scene, subject.settings.technique),
             lit: LitScene::new(scene, &subject.settings, watch)?,
             scene: Arc::clone(subject.scene),
             look: subject.look.clone(),

@@ -22,7 +22,7 @@ pub struct Cost {
 
 /// Reads of textures by one invocation of every entry point but those of vertices, counted in its source: one light, as many
 /// Gaussians as skin has at a size, loops as long as for most texels, the default bloom of 1080 rows.
-pub const TAPS: [(&str, u64); 30] = [
+pub const TAPS: [(&str, u64); 32] = [
     ("deform_vertices", 0),
     ("stretch_at_vertices", 0),
     ("unroll", 2),
@@ -46,6 +46,8 @@ pub const TAPS: [(&str, u64); 30] = [
     ("smooth_map", 51),
     ("shade", 36),
     ("show", 44),
+    ("light_image", 26),
+    ("sample_profile", 82),
     ("see_sky", 1),
     ("downsample", 4),
     ("reduce", 4),

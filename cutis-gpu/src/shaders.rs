@@ -123,6 +123,25 @@ macro_rules! resolve {
 pub const RESOLVE: &str = resolve!("passes/inside/texture_space.wgsl");
 /// Pass `resolve` of `wrap`.
 pub const RESOLVE_WRAP: &str = resolve!("lib/ambient.wgsl", "lib/light_map.wgsl", "passes/inside/wrap.wgsl");
+/// Pass `resolve` of `image-space`.
+pub const RESOLVE_IMAGE_SPACE: &str = resolve!("passes/inside/image_space.wgsl");
+/// Pass `irradiance image`: what the final pass knows of a place, without its technique.
+pub const IRRADIANCE_IMAGE: &str = resolve!(
+    "lib/ambient.wgsl",
+    "lib/light_map.wgsl",
+    "passes/inside/image_space.wgsl",
+    "passes/irradiance_image.wgsl"
+);
+/// Pass `sample profile`.
+pub const SAMPLE_PROFILE: &str = wgsl!(
+    "lib/cover.wgsl",
+    "lib/packing.wgsl",
+    "lib/mesh.wgsl",
+    "lib/lights.wgsl",
+    "lib/light_map.wgsl",
+    "lib/camera.wgsl",
+    "passes/sample_profile.wgsl"
+);
 /// Pass `resolve`: what lies behind everything.
 pub const SKY: &str = wgsl!("lib/mesh.wgsl", "lib/camera.wgsl", "lib/environment.wgsl", "passes/sky.wgsl");
 /// Pass `downsample`.
@@ -142,12 +161,13 @@ pub const TONE_MAP: &str = wgsl!(
 pub fn resolve(technique: TechniqueName) -> &'static str {
     match technique {
         TechniqueName::Wrap => RESOLVE_WRAP,
+        TechniqueName::ImageSpace => RESOLVE_IMAGE_SPACE,
         _ => RESOLVE,
     }
 }
 
 /// All of them by name.
-pub const ALL: [(&str, &str); 22] = [
+pub const ALL: [(&str, &str); 25] = [
     ("deform", DEFORM),
     ("stretch", STRETCH),
     ("atlas", ATLAS),
@@ -166,6 +186,9 @@ pub const ALL: [(&str, &str); 22] = [
     ("smooth", SMOOTH),
     ("resolve", RESOLVE),
     ("resolve of wrap", RESOLVE_WRAP),
+    ("resolve of image-space", RESOLVE_IMAGE_SPACE),
+    ("irradiance image", IRRADIANCE_IMAGE),
+    ("sample profile", SAMPLE_PROFILE),
     ("sky", SKY),
     ("downsample", DOWNSAMPLE),
     ("bloom", BLOOM),

@@ -43,3 +43,12 @@ fn map_uv(map: LightMap, axes_mm: vec3f) -> vec2f {
     let place = axes_mm.xy / map_half_width_mm(map, axes_mm.z);
     return vec2f(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y);
 }
+
+/// A point in the axes of the map, as a vertex shader places it.
+fn on_map(map: LightMap, axes_mm: vec3f) -> vec4f {
+    let depth = (axes_mm.z - map.near_mm) / (map.far_mm - map.near_mm);
+    if map.directional {
+        return vec4f(axes_mm.xy / map.half_width, depth, 1.0);
+    }
+    return vec4f(axes_mm.xy / map.half_width, depth * map.far_mm, axes_mm.z);
+}

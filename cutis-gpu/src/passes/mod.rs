@@ -9,9 +9,11 @@ pub mod downsample;
 pub mod gather;
 pub mod inside;
 pub mod irradiance;
+pub mod irradiance_image;
 pub mod levels;
 pub mod openness;
 pub mod resolve;
+pub mod sample_profile;
 pub mod seven_taps;
 pub mod shadow;
 pub mod shares;
@@ -68,6 +70,10 @@ pub struct Passes {
     pub transmission: transmission::TransmissionPass,
     /// Pass `resolve`.
     pub resolve: resolve::ResolvePass,
+    /// Pass `irradiance image`.
+    pub irradiance_image: irradiance_image::IrradianceImagePass,
+    /// Pass `sample profile`.
+    pub sample_profile: sample_profile::SampleProfilePass,
     /// Pass `downsample`.
     pub downsample: downsample::DownsamplePass,
     /// Pass `bloom`.
@@ -95,6 +101,8 @@ impl Passes {
             gather: gather::GatherPass::new(gpu),
             transmission: transmission::TransmissionPass::new(gpu),
             resolve: resolve::ResolvePass::new(gpu),
+            irradiance_image: irradiance_image::IrradianceImagePass::new(gpu),
+            sample_profile: sample_profile::SampleProfilePass::new(gpu),
             downsample: downsample::DownsamplePass::new(gpu),
             bloom: bloom::BloomPass::new(gpu),
             tone_map: tone_map::ToneMapPass::new(gpu),

@@ -42,14 +42,6 @@ fn see_depth(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4f {
     return on_map(map, in_map_axes(map, vertices[vertex].position_mm));
 }
 
-fn on_map(map: LightMap, axes_mm: vec3f) -> vec4f {
-    let depth = (axes_mm.z - map.near_mm) / (map.far_mm - map.near_mm);
-    if map.directional {
-        return vec4f(axes_mm.xy / map.half_width, depth, 1.0);
-    }
-    return vec4f(axes_mm.xy / map.half_width, depth * map.far_mm, axes_mm.z);
-}
-
 @fragment
 fn map_surface(seen: Seen) -> Mapped {
     return Mapped(seen.depth_mm, vec2u(pack2x16unorm(seen.uv), seen.chart | (drawn.object << 16u)));

@@ -47,7 +47,7 @@ impl GpuScene {
             let Some((kind, level)) = self.source(gpu, passes, i as u32, aov)? else { continue };
             let clear = Some(if aov == Aov::Samples { taken } else { wgpu::Color::TRANSPARENT });
             let canvas = Canvas { samples: &samples, depth, clear, first: i == 0 };
-            let inputs = maps.resolve_inputs(passes, &self.shared);
+            let inputs = maps.resolve_inputs(passes, &self.shared, self.picture.gathered());
             steps.push(passes.resolve.layer_step(gpu, &inputs, (kind, grid * grid), &level, &canvas));
         }
         steps.push(passes.downsample.step(gpu, *grid, &samples, &pixels));

@@ -6,6 +6,7 @@ pub mod deformable;
 pub mod development;
 pub mod environment;
 pub mod geometry;
+pub mod images;
 pub mod layers;
 pub mod lights;
 pub mod material;
@@ -30,10 +31,11 @@ use crate::{Gpu, GpuError};
 use bytemuck::Zeroable;
 use cutis_render::lit_scene::{atlas_sizes, chosen_kernel};
 use cutis_render::prepare::FilteredEnvironment;
-use cutis_render::{PassTime, Progress, RenderError, Settings};
+use cutis_render::{PassTime, Progress, RenderError, Settings, TechniqueName};
 use cutis_scene::{Camera, Pose, PoseError, Scene};
 use development::Development;
 use glam::Vec4;
+use images::Images;
 use object::{ObjectMaps, ObjectSteps, Prepared};
 use picture::Picture;
 use posing::Posing;
@@ -47,6 +49,8 @@ pub struct GpuScene {
     pub objects: Vec<ObjectMaps>,
     /// What they share.
     pub shared: Shared,
+    /// What lights see, and the profiles, for the technique that samples these.
+    images: Option<Images>,
     /// What it is drawn on.
     picture: Picture,
     /// What deforms the objects, and where the camera stands.
@@ -96,6 +100,9 @@ impl GpuScene {
         let shared = Shared::new(gpu, scene, settings, filtered.as_ref())?;
         let mut this = Self {
             picture: Picture::new(gpu, settings)?,
+            images: (settings.light_inside() == TechniqueName::ImageSpace)
+                .then(|| Images::new(gpu, &shared, scene, settings))
+                .transpose()?,
             shared,
             objects: Vec::new(),
             posing: Posing::new(gpu, scene)?,
@@ -159,7 +166,11 @@ impl GpuScene {
             }
         }
         self.light_steps.extend(after);
-        self.picture.lay_steps(gpu, passes, &self.shared, &self.objects, self.background);
+        if let Some(images) = &self.images {
+            self.light_steps.extend(images.steps(gpu, passes, &self.shared, &self.objects));
+        }
+        let images = self.images.as_ref();
+        self.picture.lay_steps(gpu, passes, &self.shared, &self.objects, images, self.background);
     }
 
     /// Draws on a picture of another size or with other samples from now on; only those of the settings count.
@@ -170,7 +181,8 @@ impl GpuScene {
         if !self.picture.serves(settings) {
             self.picture = Picture::new(gpu, settings)?;
             self.posing.set_aspect(gpu, &self.shared, self.picture.aspect());
-            self.picture.lay_steps(gpu, passes, &self.shared, &self.objects, self.background);
+            let images = self.images.as_ref();
+            self.picture.lay_steps(gpu, passes, &self.shared, &self.objects, images, self.background);
             self.lay_film(gpu, passes);
         }
         gpu.check()

@@ -194,8 +194,13 @@ impl ObjectMaps {
         self.transmission = result;
     }
 
-    /// What the final pass reads of this object.
-    pub fn resolve_inputs<'a>(&'a self, passes: &'a Passes, shared: &'a Shared) -> ResolveInputs<'a> {
+    /// What the final pass reads of this object; `gathered` is what was gathered for the picture, for techniques that do.
+    pub fn resolve_inputs<'a>(
+        &'a self,
+        passes: &'a Passes,
+        shared: &'a Shared,
+        gathered: Option<&'a Map>,
+    ) -> ResolveInputs<'a> {
         ResolveInputs {
             samplers: &passes.samplers,
             camera: &shared.camera,
@@ -206,7 +211,7 @@ impl ObjectMaps {
             material: &self.material,
             charts: [0, openness::HALVINGS].map(|halvings| &self.charts.sizes[halvings]),
             technique: self.technique,
-            inside: self.inside.bound(self, shared),
+            inside: self.inside.bound(self, shared, gathered),
             visibility: &self.visibility,
             ambient: &self.ambient,
             rho_dt: &self.rho_dt,

@@ -1,14 +1,16 @@
 //! What the camera sees: samples, their depths and their mean.
 
+use super::images::Images;
 use super::object::ObjectMaps;
 use super::shared::Shared;
 use crate::map::Map;
 use crate::passes::Passes;
+use crate::passes::irradiance_image::IrradianceImages;
 use crate::passes::resolve::{Canvas, PICTURE};
 use crate::pipeline::DEPTH;
 use crate::step::Step;
 use crate::{Gpu, GpuError};
-use cutis_render::Settings;
+use cutis_render::{Settings, TechniqueName};
 
 /// A picture of one size.
 #[derive(Debug)]
@@ -22,6 +24,7 @@ pub struct Picture {
     /// What draws it, once the light is there.
     pub steps: Vec<Step>,
     samples: Map,
+    gathering: Option<Gathering>,
     /// Bytes of its maps.
     pub memory_bytes: u64,
 }
@@ -46,6 +49,8 @@ impl Picture {
             depth: Map::new(gpu, "depth", sides, 1, DEPTH),
             grid,
             steps: Vec::new(),
+            gathering: (settings.light_inside() == TechniqueName::ImageSpace)
+                .then(|| Gathering::new(gpu, sides)),
             samples,
             memory_bytes: gpu.asked_bytes(),
         })
@@ -61,6 +66,11 @@ impl Picture {
         self.pixels.width() as f32 / self.pixels.height() as f32
     }
 
+    /// What was gathered for its samples, where the technique does that.
+    pub fn gathered(&self) -> Option<&Map> {
+        self.gathering.as_ref().map(|gathering| &gathering.gathered)
+    }
+
     /// Lays the steps that draw some objects before the sky or a plain background.
     pub fn lay_steps(
         &mut self,
@@ -68,6 +78,7 @@ impl Picture {
         passes: &Passes,
         shared: &Shared,
         objects: &[ObjectMaps],
+        images: Option<&Images>,
         background: wgpu::Color,
     ) {
         let Shared { environment, camera, .. } = shared;
@@ -79,6 +90,9 @@ impl Picture {
         for (i, maps) in objects.iter().enumerate() {
             self.steps.push(resolve.nearest_step(gpu, camera, &maps.geometry, &self.depth, i == 0));
         }
+        if let (Some(gathering), Some(images)) = (&self.gathering, images) {
+            self.steps.extend(gathering.steps(gpu, passes, shared, (objects, images), &self.depth));
+        }
         for (i, maps) in objects.iter().enumerate() {
             let canvas = Canvas {
                 samples: &self.samples,
@@ -86,7 +100,11 @@ impl Picture {
                 clear: sky.is_none().then_some(background),
                 first: i == 0,
             };
-            self.steps.push(resolve.step(gpu, &maps.resolve_inputs(passes, shared), &canvas));
+            self.steps.push(resolve.step(
+                gpu,
+                &maps.resolve_inputs(passes, shared, self.gathered()),
+                &canvas,
+            ));
         }
         if self.grid > 1 {
             self.steps.push(passes.downsample.step(gpu, self.grid, &self.samples, &self.pixels));
@@ -99,5 +117,39 @@ fn size(settings: &Settings) -> [u32; 2] {
 }
 
 fn grid(settings: &Settings) -> u32 {
-    (settings.samples_per_pixel as f32).sqrt().ceil() as u32
+    settings.samples_grid()
+}
+
+/// What the camera sees of the irradiance, and what is gathered from it for every sample.
+#[derive(Debug)]
+struct Gathering {
+    image: IrradianceImages,
+    /// What entered where the camera sees it, and elsewhere.
+    gathered: Map,
+}
+
+impl Gathering {
+    fn new(gpu: &Gpu, sides: [u32; 2]) -> Self {
+        Self {
+            image: IrradianceImages::new(gpu, sides, 1),
+            gathered: Map::new(gpu, "gathered light", sides, 2, PICTURE),
+        }
+    }
+
+    fn steps(
+        &self,
+        gpu: &Gpu,
+        passes: &Passes,
+        shared: &Shared,
+        (objects, images): (&[ObjectMaps], &Images),
+        depth: &Map,
+    ) -> Vec<Step> {
+        let seen = (0..).zip(objects).map(|(object, maps)| {
+            let inputs = maps.resolve_inputs(passes, shared, None);
+            passes.irradiance_image.camera_step(gpu, &inputs, object, &self.image, depth)
+        });
+        let from = [&self.image, &images.of_lights];
+        let gather = passes.sample_profile.step(gpu, shared, &images.profiles, from, &self.gathered);
+        seen.chain([gather]).collect()
+    }
 }

@@ -4,6 +4,7 @@
 pub mod wrap;
 
 use crate::Gpu;
+use crate::map::Map;
 use crate::pipeline::Bound;
 use crate::scene::SceneError;
 use crate::scene::object::ObjectMaps;
@@ -18,6 +19,8 @@ use wrap::WrapMaps;
 pub enum Inside {
     /// Light that was spread in texture space is among the object's own textures.
     Spread,
+    /// `image-space`: what is gathered belongs to the picture.
+    Gathered,
     /// `wrap`.
     Wrap(WrapMaps),
 }
@@ -25,7 +28,7 @@ pub enum Inside {
 impl Inside {
     /// Whether a technique is drawn here.
     pub fn knows(technique: TechniqueName) -> bool {
-        matches!(technique, TechniqueName::TextureSpace | TechniqueName::TextureBlur | TechniqueName::Wrap)
+        technique != TechniqueName::Truth && technique != TechniqueName::DepthAbsorption
     }
 
     /// Uploads what the technique of the settings knows of an object, whose diffuse reflectance is `colour`.
@@ -35,13 +38,21 @@ impl Inside {
     pub fn new(gpu: &Gpu, object: &Object, colour: Vec3, settings: &Settings) -> Result<Self, SceneError> {
         Ok(match settings.light_inside() {
             TechniqueName::Wrap => Self::Wrap(WrapMaps::new(gpu, &object.material, colour, settings)?),
+            TechniqueName::ImageSpace => Self::Gathered,
             _ => Self::Spread,
         })
     }
 
     /// What the technique's part of the final pass reads.
-    pub fn bound<'a>(&'a self, maps: &'a ObjectMaps, shared: &'a Shared) -> Vec<(u32, Bound<'a>)> {
+    /// `gathered` is what was gathered for the picture, for techniques that do.
+    pub fn bound<'a>(
+        &'a self,
+        maps: &'a ObjectMaps,
+        shared: &'a Shared,
+        gathered: Option<&'a Map>,
+    ) -> Vec<(u32, Bound<'a>)> {
         match self {
+            Self::Gathered => gathered.map(|map| (30, Bound::Texture(&map.array))).into_iter().collect(),
             Self::Spread => vec![
                 (30, Bound::Texture(maps.local.view())),
                 (31, Bound::Texture(maps.charts.sizes[1].map.view())),

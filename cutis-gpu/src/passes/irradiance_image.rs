@@ -1,0 +1,135 @@
+//! The irradiance as an image, seen by the camera or by a light. The twin of cutis-render's pass `irradiance_image`.
+
+use crate::Gpu;
+use crate::map::{Map, View};
+use crate::passes::SLIDES;
+use crate::passes::resolve::ResolveInputs;
+use crate::passes::shadow::Drawn;
+use crate::pipeline::{Blueprint, Bound, DEPTH, Pipeline};
+use crate::shaders;
+use crate::step::{Draw, Step};
+use wgpu::TextureFormat as Format;
+
+/// Images of one size, one layer each.
+#[derive(Debug)]
+pub struct IrradianceImages {
+    /// Place and normal of what is seen.
+    pub places: Map,
+    /// Irradiance, and which object is seen.
+    pub light: Map,
+}
+
+impl IrradianceImages {
+    /// So many empty images, one at least: no binding may be empty.
+    pub fn new(gpu: &Gpu, size: [u32; 2], count: u32) -> Self {
+        let map = |label, format| Map::new(gpu, label, size, count.max(1), format);
+        Self {
+            places: map("places seen", Format::Rgba32Uint),
+            light: map("irradiance seen", Format::Rgba16Float),
+        }
+    }
+}
+
+/// The pass's pipelines.
+#[derive(Debug)]
+pub struct IrradianceImagePass {
+    from_camera: Pipeline,
+    from_light: Pipeline,
+}
+
+impl IrradianceImagePass {
+    /// Compiles them.
+    pub fn new(gpu: &Gpu) -> Self {
+        let pipeline = |vertex| {
+            let blueprint = Blueprint {
+                name: "irradiance image",
+                source: shaders::IRRADIANCE_IMAGE,
+                entries: [vertex, "light_image"],
+                targets: &[Format::Rgba32Uint, Format::Rgba16Float],
+                additive: false,
+                depth: true,
+            };
+            Pipeline::new(gpu, &blueprint)
+        };
+        Self { from_camera: pipeline("see"), from_light: pipeline("see_from_light") }
+    }
+
+    /// Draws an object as the camera sees it, where it is nearest by the depths that are there.
+    pub fn camera_step(
+        &self,
+        gpu: &Gpu,
+        inputs: &ResolveInputs,
+        object: u32,
+        images: &IrradianceImages,
+        depth: &Map,
+    ) -> Step {
+        let drawn = Drawn { light: 0, object, pad0: 0, pad1: 0 };
+        let targets = [&images.places.layers[0], &images.light.layers[0]];
+        let more = [(2, Bound::Buffer(inputs.camera))];
+        draw(gpu, &self.from_camera, inputs, drawn, &more, targets, (depth, false))
+    }
+
+    /// Draws an object as a light sees it, into image number `layer`; the first object empties it before.
+    pub fn light_step(
+        &self,
+        gpu: &Gpu,
+        inputs: &ResolveInputs,
+        drawn: Drawn,
+        images: &IrradianceImages,
+        (layer, depth): (u32, &Map),
+    ) -> Step {
+        let targets = [&images.places, &images.light].map(|map| &map.layers[layer as usize]);
+        draw(gpu, &self.from_light, inputs, drawn, &[], targets, (depth, drawn.object == 0))
+    }
+}
+
+/// A depth buffer for images that lights see.
+pub fn depth_buffer(gpu: &Gpu, side: u32) -> Map {
+    Map::square(gpu, "depths of irradiance images", side, 1, DEPTH)
+}
+
+fn draw(
+    gpu: &Gpu,
+    pipeline: &Pipeline,
+    inputs: &ResolveInputs,
+    drawn: Drawn,
+    more: &[(u32, Bound)],
+    targets: [&View; 2],
+    (depth, clear_depth): (&Map, bool),
+) -> Step {
+    let ResolveInputs { samplers, environment, geometry, material, charts, .. } = inputs;
+    let numbers = gpu.uniform("drawn", &drawn);
+    let mut bound = vec![
+        (0, Bound::Buffer(&geometry.vertices)),
+        (1, Bound::Buffer(&geometry.triangles)),
+        (3, Bound::Buffer(inputs.lights)),
+        (4, Bound::Buffer(&material.numbers)),
+        (5, Bound::Buffer(&environment.numbers)),
+        (6, Bound::Texture(charts[0].map.view())),
+        (10, Bound::Texture(&inputs.visibility.array)),
+        (11, Bound::Texture(inputs.ambient.view())),
+        (12, Bound::Texture(charts[1].map.view())),
+        (14, Bound::Texture(inputs.rho_dt.view())),
+        (15, Bound::Texture(material.albedo.view())),
+        (16, Bound::Texture(material.relief.view())),
+        (17, Bound::Texture(material.rho_s.view())),
+        (18, Bound::Texture(material.roughness.view())),
+        (19, Bound::Sampler(&samplers.linear)),
+        (20, Bound::Sampler(&samplers.repeating)),
+        (21, Bound::Sampler(&samplers.around_sky)),
+        (SLIDES, Bound::Buffer(inputs.slides)),
+        (32, Bound::Texture(environment.irradiance.view())),
+        (40, Bound::Buffer(&numbers)),
+    ];
+    bound.extend_from_slice(more);
+    Step::Draw(Draw {
+        pipeline: pipeline.clone(),
+        bind_groups: vec![pipeline.bind(gpu, 0, &bound)],
+        targets: targets.into_iter().cloned().collect(),
+        depth: Some((depth.view().clone(), clear_depth)),
+        clear: (drawn.object == 0).then_some(wgpu::Color::TRANSPARENT),
+        indices: None,
+        vertices: 3 * geometry.triangle_count,
+        instances: 1,
+    })
+}

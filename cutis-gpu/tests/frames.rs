@@ -94,7 +94,7 @@ fn a_patch_under_a_projector() {
     // 28 mm by 14 mm of 40: its edges lie across the patch.
     scene.lights = vec![projector(&scene, 200.0, 0.035)];
     let wanted = Settings { aovs: vec![Aov::Irradiance, Aov::Specular, Aov::Diffuse], ..settings() };
-    same_on_both("a_patch_under_a_projector", &scene, &wanted, tolerances::PATCH);
+    same_on_both("a_patch_under_a_projector", &scene, &wanted, tolerances::PROJECTED[0]);
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn the_built_in_head_under_two_projectors() {
         first.radius_mm = 10.0;
         first.axes = Projector::axes(-first.position_mm.normalize(), Vec3::Y);
     }
-    same_on_both("the_built_in_head_under_two_projectors", &scene, &settings(), tolerances::HEAD);
+    same_on_both("the_built_in_head_under_two_projectors", &scene, &settings(), tolerances::PROJECTED[1]);
 }
 
 #[test]

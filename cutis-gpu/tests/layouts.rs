@@ -20,6 +20,7 @@ use cutis_gpu::scene::environment::GpuEnvironment;
 use cutis_gpu::scene::geometry::Vertex;
 use cutis_gpu::scene::lights::{GpuLight, NO_MAP};
 use cutis_gpu::scene::material::GpuMaterial;
+use cutis_gpu::scene::slides::EXPONENT;
 use cutis_gpu::{passes, shaders};
 use cutis_render::film::{self, ToneMapper, dither};
 use cutis_render::passes::tap::NARROW_TEXEL2;
@@ -214,6 +215,7 @@ fn constants_match_wgsl() {
         (shaders::OPENNESS, "HALVINGS", openness::HALVINGS as f64),
         (shaders::GATHER, "NO_CHART", f64::from(u16::MAX)),
         (shaders::SHADOW, "NO_MAP", f64::from(NO_MAP)),
+        (shaders::SHADOW, "SLIDE_EXPONENT", f64::from(EXPONENT)),
         (shaders::IRRADIANCE, "COSINES", COSINES as f64),
         (shaders::IRRADIANCE, "ROUGHNESSES", ROUGHNESSES as f64),
         (shaders::IRRADIANCE, "MIN_ROUGHNESS", f64::from(MIN_ROUGHNESS)),

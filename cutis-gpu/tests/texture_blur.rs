@@ -112,7 +112,7 @@ fn a_patch_with_layers_under_it() {
     for (passes, blend) in [(0, 1.0), (1, 1.0), (2, 0.6), (5, 1.0)] {
         let blur = TextureBlurSettings { passes, blend, ..TextureBlurSettings::default() };
         let what = format!("a_patch_with_layers_under_it, {passes} passes");
-        same_on_both(&what, &scene, &settings(blur), [tolerances::PATCH; 3]);
+        same_on_both(&what, &scene, &settings(blur), [tolerances::VEINS; 3]);
     }
 }
 
@@ -120,7 +120,7 @@ fn a_patch_with_layers_under_it() {
 fn the_built_in_head_as_wide_as_its_material() {
     let blur =
         TextureBlurSettings { passes: 3, width: BlurWidth::Material, ..TextureBlurSettings::default() };
-    let allowed = [tolerances::HEAD, tolerances::DIFFUSE, tolerances::DIFFUSE];
+    let allowed = [tolerances::HEAD, tolerances::SEVEN_TAPS, tolerances::SEVEN_TAPS];
     same_on_both(
         "the_built_in_head_as_wide_as_its_material",
         &head_in_the_studio(),

@@ -4,6 +4,8 @@ const DIRECTIONAL: u32 = 0u;
 const POINT: u32 = 1u;
 const SPOT: u32 = 2u;
 const PROJECTOR: u32 = 3u;
+/// Added to exponents of images of projectors.
+const SLIDE_EXPONENT: f32 = 128.0;
 /// In place of a layer: the light has no shadow map.
 const NO_MAP: u32 = 0xffffffffu;
 
@@ -37,7 +39,7 @@ struct Light {
     tan_half_height: f32,
 }
 
-/// Images of all projectors, linear: red and green in x, blue in y, as halves of single precision. All passes bind it here.
+/// Images of all projectors, linear: red and green in x, blue and the exponent of all three in y. All passes bind it here.
 @group(0) @binding(29) var<storage, read> slides: array<vec2u>;
 
 struct LightSample {
@@ -108,5 +110,6 @@ fn slide_filter(l: u32, dir_travel: vec3f) -> vec3f {
 
 fn slide_texel(l: u32, x: u32, y: u32) -> vec3f {
     let packed = slides[lights[l].slide_first + y * lights[l].slide_width + x];
-    return vec3f(unpack2x16float(packed.x), unpack2x16float(packed.y).x);
+    let scale = exp2(f32(packed.y >> 16u) - SLIDE_EXPONENT);
+    return vec3f(unpack2x16unorm(packed.x), unpack2x16unorm(packed.y).x) * scale;
 }

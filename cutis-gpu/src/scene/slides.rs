@@ -2,15 +2,19 @@
 
 use crate::{Gpu, GpuError};
 use cutis_scene::{Light, Scene, Texture};
+use glam::Vec3;
 use std::sync::Arc;
 
 /// Most texels of all images together: eight bytes each, in the 128 MiB that every device grants a buffer.
 pub const MAX_TEXELS: u64 = 1 << 24;
 
+/// Added to exponents, so that none is negative; also in `lib/lights.wgsl`.
+pub const EXPONENT: f32 = 128.0;
+
 /// The images that the projectors of a scene throw.
 #[derive(Debug)]
 pub struct Slides {
-    /// Linear colours as halves of single precision: red and green in the first word, blue in the second.
+    /// Linear colours: red and green in the first word, blue and the exponent of all three in the second.
     pub texels: wgpu::Buffer,
     images: Vec<Arc<Texture>>,
 }
@@ -69,11 +73,12 @@ fn images(scene: &Scene) -> impl Iterator<Item = &Arc<Texture>> {
 
 fn packed(image: &Texture) -> impl Iterator<Item = [u32; 2]> {
     let places = (0..image.height()).flat_map(|y| (0..image.width()).map(move |x| (x, y)));
-    places.map(|(x, y)| {
-        // Brighter than half precision can be would be infinite.
-        let [r, g, b, _] = image.texel(x, y).to_array().map(|c| half::f16::from_f32(c.clamp(0.0, 65_504.0)));
-        let word =
-            |low: half::f16, high: half::f16| u32::from(low.to_bits()) | u32::from(high.to_bits()) << 16;
-        [word(r, g), word(b, half::f16::ZERO)]
-    })
+    places.map(|(x, y)| packed_texel(image.texel(x, y).truncate().max(Vec3::ZERO)))
+}
+
+/// 16 bits for each channel, times two to the power that the brightest of them needs.
+fn packed_texel(colour: Vec3) -> [u32; 2] {
+    let exponent = colour.max_element().max(f32::MIN_POSITIVE).log2().ceil().clamp(-100.0, 127.0);
+    let [r, g, b] = (colour / exponent.exp2()).to_array().map(|c| (c.min(1.0) * 65_535.0).round() as u32);
+    [r | g << 16, b | ((exponent + EXPONENT) as u32) << 16]
 }

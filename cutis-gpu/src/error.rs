@@ -19,12 +19,6 @@ pub enum GpuError {
         /// What it said.
         reason: String,
     },
-    /// Something is not drawn here.
-    #[error("{what} is not drawn on graphics adapters")]
-    Unknown {
-        /// What it is.
-        what: String,
-    },
     /// Something is larger than the device takes.
     #[error("{what} is {size}, more than the {limit} this graphics adapter takes")]
     TooLarge {

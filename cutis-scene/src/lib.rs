@@ -28,6 +28,7 @@ pub mod texture;
 pub mod topology;
 pub mod validation;
 
+mod scale;
 mod scene;
 mod write;
 

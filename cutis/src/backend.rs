@@ -43,6 +43,18 @@ impl Backend {
         Some(Box::new(CpuRenderer))
     }
 
+    /// The renderer for a technique and a scene; the processor for what graphics adapters do not draw.
+    ///
+    /// # Errors
+    /// If the GPU is asked for and there is none.
+    pub fn renderer_that_knows(self, technique: TechniqueName, scene: &Scene) -> Result<Box<dyn Renderer>> {
+        if self == Backend::Gpu && !GpuRenderer::knows(technique) {
+            talk::tell(&format!("backend gpu: the processor, because {}", unknown(technique)));
+            return Ok(Box::new(CpuRenderer));
+        }
+        self.renderer(technique, scene)
+    }
+
     /// The renderer for a technique and a scene.
     ///
     /// # Errors
@@ -84,7 +96,8 @@ fn on_any_adapter() -> Result<GpuRenderer> {
         .map_err(|error| miette!(help = "leave --backend out, or say cpu", "{error}"))
 }
 
-fn unknown(technique: TechniqueName) -> String {
+/// Why a graphics adapter does not draw a technique.
+pub fn unknown(technique: TechniqueName) -> String {
     format!("the technique {technique} is not drawn on graphics adapters")
 }
 

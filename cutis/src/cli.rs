@@ -4,15 +4,18 @@
 mod compare;
 mod diff;
 mod profile;
+mod technique;
 mod validate;
 mod view;
 
 use crate::backend::Backend;
 use crate::talk;
+use crate::techniques::paper::Paper;
 use clap::builder::PossibleValuesParser;
 use clap::error::ErrorKind;
 use clap::{Args, Parser, Subcommand};
 pub use compare::CompareArgs;
+use cutis_optics::presets;
 use cutis_render::film::ToneMapper;
 use cutis_render::settings::Quality;
 use cutis_render::{Aov, AovSpace, Diffusion, Settings, TechniqueName};
@@ -21,6 +24,7 @@ pub use profile::{METHODS, ProfileArgs};
 use std::fmt::Display;
 use std::path::PathBuf;
 use std::process::ExitCode;
+pub use technique::{DepthAbsorptionArgs, ImageSpaceArgs, TechniqueArgs, TextureBlurArgs, WrapArgs, colour};
 pub use validate::ValidateArgs;
 pub use view::ViewArgs;
 
@@ -74,9 +78,15 @@ pub struct RenderArgs {
     /// Picture to write: .png (developed, sRGB) or .exr (radiance as rendered, layers inside)
     #[arg(short, long, value_name = "FILE", default_value = "cutis.png")]
     pub output: PathBuf,
-    /// Method that draws the picture
-    #[arg(long, value_name = "NAME", default_value_t = Settings::default().technique.to_string(), value_parser = names(TechniqueName::ALL))]
-    pub technique: String,
+    /// Method that draws the picture [default: texture-space, or that of --as-in]
+    #[arg(long, value_name = "NAME", value_parser = names(TechniqueName::ALL))]
+    pub technique: Option<String>,
+    /// Numbers of a paper's own technique, where it tells them; flags that are given win. green-2004: the numbers of its
+    /// listings, for --technique wrap, depth-absorption or texture-blur; mertens-2003: image-space, 500x500 pixels, the
+    /// material skin1, the scene scaled as a whole so that its longest side is 100 mm, without Jacobian and without views
+    /// of lights
+    #[arg(long, value_name = "PAPER", value_parser = names(Paper::ALL))]
+    pub as_in: Option<String>,
     /// How light spreads under the surface; none: the surface is opaque
     #[arg(long, value_name = "NAME", default_value_t = Settings::default().diffusion.to_string(), value_parser = names(DIFFUSIONS))]
     pub diffusion: String,
@@ -152,6 +162,13 @@ pub struct RenderArgs {
     /// Length of the mesh file's unit [mm, above 0, default: what the file says; 1000 for glTF]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub millimetres_per_unit: Option<f32>,
+    /// Scale the whole scene, lights and camera too, so that the longest side of the box around it is so long; the material
+    /// stays, so that light goes farther through a smaller head [mm, above 0, default: as long as it is]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub longest_side: Option<f32>,
+    /// Material of all objects, by the name of a preset, instead of their own scattering
+    #[arg(long, value_name = "NAME", value_parser = names(presets::all().iter().map(|preset| preset.name)))]
+    pub material: Option<String>,
     /// Diffuse colour texture for all objects, instead of their own
     #[arg(long, value_name = "FILE")]
     pub albedo: Option<PathBuf>,
@@ -170,6 +187,8 @@ pub struct RenderArgs {
     /// Width and height of the built-in head's maps; 0: no maps [texels, 0 to 8192, default 2048]
     #[arg(long, value_name = "N")]
     pub map_size: Option<u32>,
+    #[command(flatten)]
+    pub techniques: TechniqueArgs,
 }
 
 /// Arguments of `cutis simulate`.
@@ -238,7 +257,7 @@ pub fn parse() -> Result<Cli, ExitCode> {
 }
 
 /// The parser's complaint without its usage and hints, on one line.
-fn one_line(error: &clap::Error) -> String {
+pub fn one_line(error: &clap::Error) -> String {
     let text = error.render().to_string();
     let told = text.lines().take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
     let words: Vec<_> = told.flat_map(str::split_whitespace).collect();
@@ -298,6 +317,59 @@ mod tests {
             low.width, low.height, low.samples_per_pixel, low.irradiance_size
         );
         assert!(help.contains(&words), "{help}");
+    }
+
+    #[test]
+    fn defaults_of_the_techniques_in_the_help_are_their_own() {
+        use cutis_render::settings::TechniqueSettings;
+        use cutis_render::technique::texture_blur::BlurWidth;
+        let help = Cli::command().find_subcommand("render").map(|c| c.clone().render_long_help().to_string());
+        let help = help.expect("there is a render command").split_whitespace().collect::<Vec<_>>().join(" ");
+        // What is said of a flag ends where the next one begins.
+        let of = |flag: &str| {
+            let start = help.find(&format!("{flag} <")).unwrap_or_else(|| panic!("{flag} is not in {help}"));
+            let told = &help[start..];
+            let is_next = |(at, _): &(usize, &str)| {
+                told[at + 1..].split_whitespace().nth(1).is_some_and(|word| word.starts_with('<'))
+            };
+            told.match_indices(" --").find(is_next).map_or(told, |(end, _)| &told[..end]).to_owned()
+        };
+        let told = |flag: &str, default: &dyn Display| {
+            let (text, words) = (of(flag), format!("default {default}]"));
+            let named = format!("[default: {default}]");
+            assert!(text.contains(&words) || text.contains(&named), "{words} is not in {text}");
+        };
+        let rgb = |c: glam::Vec3| format!("{},{},{}", c.x, c.y, c.z);
+        let on = |is_on: bool| if is_on { "on" } else { "off" };
+        let TechniqueSettings { wrap, depth_absorption: depth, texture_blur: blur, image_space: image } =
+            TechniqueSettings::default();
+        told("--wrap", &wrap.wrap);
+        told("--scatter-width", &wrap.scatter_width);
+        told("--scatter-colour", &rgb(wrap.scatter_colour));
+        told("--wrap-form", &wrap.form);
+        told("--wrap-energy-conserving", &on(wrap.energy_conserving));
+        assert!(wrap.radius_mm.is_none() && of("--wrap-radius").contains("default: none]"));
+        told("--wrap-shine", &wrap.shine);
+        told("--shininess", &wrap.shininess);
+        told("--wrap-specular", &rgb(wrap.specular_colour));
+        told("--wrap-shadow-offset", &wrap.shadow_offset_mm);
+        told("--growth", &depth.growth_mm);
+        told("--entry", &depth.entry);
+        told("--depth-samples", &depth.samples);
+        told("--depth-filter-radius", &depth.filter_radius_mm);
+        told("--depth-layers", &depth.layers);
+        told("--blur-weights", &blur.weights);
+        told("--blur-passes", &blur.passes);
+        told("--blur-blend", &blur.blend);
+        assert!(blur.width == BlurWidth::Listing(1.0) && of("--blur-width").contains("default 1]"));
+        told("--blur-depth", &on(blur.depth));
+        told("--profile-samples", &image.samples);
+        told("--uniform-samples", &image.uniform_samples);
+        told("--jacobian", &on(image.jacobian));
+        told("--sample-count", &image.count);
+        told("--light-views", &on(image.light_views));
+        told("--sampled-profile", &image.profile);
+        told("--technique", &format!("{}, or that of --as-in", Settings::default().technique));
     }
 
     #[test]

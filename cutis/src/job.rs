@@ -3,9 +3,11 @@
 use crate::backend::Backend;
 use crate::cli::{AOV_SPACES, DIFFUSIONS, RenderArgs};
 use crate::scene_source::SceneSource;
+use crate::techniques::paper::Paper;
+use crate::techniques::{fulfilled, idle, wishes};
 use cutis_render::film::{Bloom, Checkpoint, Film, Format, check_output, layer_path};
 use cutis_render::settings::{Quality, TechniqueSettings};
-use cutis_render::{Aov, Settings};
+use cutis_render::{Aov, Settings, TechniqueName};
 use cutis_scene::ReadOptions;
 use cutis_scene::head::HeadDetail;
 use miette::{Result, miette};
@@ -29,6 +31,8 @@ pub struct Job {
     pub format: Format,
     /// Threads to work with; none: one per processor.
     pub threads: Option<usize>,
+    /// Whose numbers are the defaults.
+    pub paper: Option<Paper>,
     /// Whether the result is told as JSON.
     pub json: bool,
     /// Wishes that have no effect, in words.
@@ -39,20 +43,36 @@ impl Job {
     /// Checks the arguments.
     pub fn new(args: &RenderArgs) -> Result<Self> {
         let backend = named("--backend", &args.backend, Backend::ALL.map(|b| (b.to_string(), b)))?;
-        let settings = settings(args)?;
+        let paper =
+            args.as_in.as_deref().map(|name| named("--as-in", name, Paper::ALL.map(|p| (p.to_string(), p))));
+        let paper = paper.transpose()?;
+        let mut warnings = Vec::new();
+        let settings = settings(args, paper, &mut warnings)?;
         backend.check(settings.technique)?;
         let film = film(args)?;
         let threads = threads_in_range(args.threads)?;
-        let source = source(args)?;
+        let source = source(args, paper)?;
         let format = check_outputs(args, &settings)?;
-        let (output, json, warnings) = (args.output.clone(), args.json, idle_wishes(args, format));
-        Ok(Self { backend, source, settings, film, output, format, threads, json, warnings })
+        warnings.extend(idle_wishes(args, format));
+        let (output, json) = (args.output.clone(), args.json);
+        Ok(Self { backend, source, settings, film, output, format, threads, paper, json, warnings })
     }
 }
 
-fn settings(args: &RenderArgs) -> Result<Settings> {
+fn settings(args: &RenderArgs, paper: Option<Paper>, warnings: &mut Vec<String>) -> Result<Settings> {
     let quality = named("--quality", &args.quality, Quality::ALL.map(|q| (q.to_string(), q)))?;
-    let preset = Settings::default().with_quality(quality);
+    let mut preset = Settings::default().with_quality(quality);
+    if let Some([width, height]) = paper.and_then(Paper::stage).map(|stage| stage.size) {
+        (preset.width, preset.height) = (width, height);
+    }
+    let technique = technique(args, paper)?;
+    let usual = TechniqueSettings::default();
+    let of_paper = paper.map_or(usual.clone(), |paper| paper.settings(usual));
+    if let Some(paper) = paper.filter(|p| p.stage().is_none() && !p.techniques().contains(&technique)) {
+        warnings.push(format!("--as-in {paper} has no effect: the technique is {technique}"));
+    }
+    let wishes = wishes(&args.techniques, warnings)?;
+    warnings.extend(idle(&wishes, technique));
     let (width, height) = args.size.as_deref().map_or(Ok((preset.width, preset.height)), size)?;
     let mut aovs: Vec<Aov> = Vec::new();
     for name in &args.aov {
@@ -62,8 +82,8 @@ fn settings(args: &RenderArgs) -> Result<Settings> {
         }
     }
     let settings = Settings {
-        technique: args.technique.parse().map_err(|reason| miette!("--technique: {reason}"))?,
-        techniques: TechniqueSettings::default(),
+        technique,
+        techniques: fulfilled(of_paper, wishes)?,
         diffusion: named("--diffusion", &args.diffusion, DIFFUSIONS.map(|d| (d.to_string(), d)))?,
         width,
         height,
@@ -83,6 +103,21 @@ fn settings(args: &RenderArgs) -> Result<Settings> {
     };
     settings.check().map_err(refused)?;
     Ok(settings)
+}
+
+/// The technique that was named, else that of the paper, else the usual one.
+fn technique(args: &RenderArgs, paper: Option<Paper>) -> Result<TechniqueName> {
+    if let Some(name) = &args.technique {
+        return name.parse().map_err(|reason| miette!("--technique: {reason}"));
+    }
+    match paper.map(|paper| (paper, paper.techniques())) {
+        None => Ok(Settings::default().technique),
+        Some((_, [technique])) => Ok(*technique),
+        Some((paper, several)) => {
+            let names = several.iter().map(TechniqueName::to_string).collect::<Vec<_>>().join(", ");
+            Err(miette!("--as-in {paper} knows several techniques: say --technique {names}"))
+        }
+    }
 }
 
 /// Where the state of a long rendering is kept.
@@ -108,14 +143,17 @@ fn film(args: &RenderArgs) -> Result<Film> {
     Ok(film)
 }
 
-fn source(args: &RenderArgs) -> Result<SceneSource> {
+fn source(args: &RenderArgs, paper: Option<Paper>) -> Result<SceneSource> {
     let millimetres = args.millimetres_per_unit;
-    if millimetres.is_some_and(|mm| !(mm > 0.0 && mm.is_finite())) {
-        return Err(miette!(
-            "--millimetres-per-unit must be above 0 mm, got {}",
-            millimetres.unwrap_or_default()
-        ));
+    for (flag, length_mm) in [("--millimetres-per-unit", millimetres), ("--longest-side", args.longest_side)]
+    {
+        if let Some(mm) = length_mm.filter(|mm| !(*mm > 0.0 && mm.is_finite())) {
+            return Err(miette!("{flag} must be above 0 mm, got {mm}"));
+        }
     }
+    let stage = paper.and_then(Paper::stage);
+    // Who says how long a unit is knows how large the head is.
+    let of_paper = stage.filter(|_| millimetres.is_none()).map(|stage| stage.longest_side_mm);
     let detail = head_detail(args)?;
     let maps = [&args.albedo, &args.normal, &args.specular, &args.environment];
     maps.into_iter().chain([&args.scene]).flatten().try_for_each(|path| must_exist(path))?;
@@ -126,7 +164,14 @@ fn source(args: &RenderArgs) -> Result<SceneSource> {
         specular: args.specular.clone(),
         ..ReadOptions::default()
     };
-    Ok(SceneSource { file: args.scene.clone(), options, environment: args.environment.clone(), detail })
+    Ok(SceneSource {
+        file: args.scene.clone(),
+        options,
+        environment: args.environment.clone(),
+        detail,
+        material: args.material.clone().or_else(|| stage.map(|stage| stage.material.to_owned())),
+        longest_side_mm: args.longest_side.or(of_paper),
+    })
 }
 
 fn head_detail(args: &RenderArgs) -> Result<HeadDetail> {
@@ -210,10 +255,7 @@ mod tests {
     use super::*;
 
     fn settings_of(words: &[&str]) -> Settings {
-        use clap::Parser;
-        let cli = crate::cli::Cli::try_parse_from(["cutis", "render"].iter().chain(words)).expect("is sound");
-        let crate::cli::Command::Render(args) = cli.command else { panic!("is a rendering") };
-        settings(&args).expect("is in range")
+        job_of(words).settings
     }
 
     #[test]
@@ -223,6 +265,57 @@ mod tests {
         assert_eq!(settings_of(&["--quality", "low"]), low);
         let own = settings_of(&["--quality", "low", "--samples", "9", "--size", "64x32"]);
         assert_eq!(own, Settings { samples_per_pixel: 9, width: 64, height: 32, ..low });
+    }
+
+    fn try_job_of(words: &[&str]) -> Result<Job> {
+        use clap::Parser;
+        let cli = crate::cli::Cli::try_parse_from(["cutis", "render"].iter().chain(words)).expect("is sound");
+        let crate::cli::Command::Render(args) = cli.command else { panic!("is a rendering") };
+        Job::new(&args)
+    }
+
+    fn job_of(words: &[&str]) -> Job {
+        try_job_of(words).expect("is in range")
+    }
+
+    #[test]
+    fn a_paper_wins_over_the_quality_and_flags_win_over_the_paper() {
+        let paper = job_of(&["--as-in", "mertens-2003", "--quality", "full"]);
+        let Settings { technique, techniques, width, height, .. } = &paper.settings;
+        assert_eq!((*technique, *width, *height), (TechniqueName::ImageSpace, 500, 500));
+        assert!(!techniques.image_space.jacobian && !techniques.image_space.light_views);
+        assert!(techniques.image_space.uniform_samples > 0, "both kinds of samples are combined");
+        assert_eq!(paper.source.material.as_deref(), Some("skin1"));
+        assert_eq!(paper.source.longest_side_mm, Some(100.0));
+        assert!(paper.warnings.is_empty(), "{:?}", paper.warnings);
+        let own = ["--jacobian", "on", "--size", "64x48", "--material", "marble", "--longest-side", "50"];
+        let flags = job_of(&[&["--as-in", "mertens-2003"][..], &own].concat());
+        assert!(flags.settings.techniques.image_space.jacobian);
+        assert!(!flags.settings.techniques.image_space.light_views, "the rest is the paper's");
+        assert_eq!((flags.settings.width, flags.settings.height), (64, 48));
+        assert_eq!(flags.source.material.as_deref(), Some("marble"));
+        assert_eq!(flags.source.longest_side_mm, Some(50.0));
+        let unit = job_of(&["--as-in", "mertens-2003", "--millimetres-per-unit", "10"]);
+        assert_eq!(unit.source.longest_side_mm, None, "who knows the unit knows the size");
+        let other = job_of(&["--as-in", "mertens-2003", "--technique", "wrap"]);
+        assert_eq!((other.settings.technique, other.settings.width), (TechniqueName::Wrap, 500));
+    }
+
+    #[test]
+    fn a_paper_of_several_techniques_takes_the_one_that_is_named() {
+        let said = try_job_of(&["--as-in", "green-2004"]).map(|_| ()).expect_err("of three").to_string();
+        assert!(said.contains("--technique wrap, depth-absorption, texture-blur"), "{said}");
+        let green = |technique| job_of(&["--as-in", "green-2004", "--technique", technique]);
+        let techniques = green("wrap").settings.techniques;
+        assert_eq!(techniques, green("texture-blur").settings.techniques);
+        assert_eq!(techniques, Paper::Green2004.settings(TechniqueSettings::default()));
+        assert_eq!(green("wrap").source.longest_side_mm, None);
+        let idle = green("texture-space").warnings;
+        assert_eq!(idle, ["--as-in green-2004 has no effect: the technique is texture-space"]);
+        let own =
+            job_of(&["--as-in", "green-2004", "--technique", "texture-blur", "--blur-weights", "normalised"]);
+        let normalised = cutis_render::technique::texture_blur::BlurWeights::Normalised;
+        assert_eq!(own.settings.techniques.texture_blur.weights, normalised);
     }
 
     #[test]

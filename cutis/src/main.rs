@@ -21,6 +21,7 @@ mod report;
 mod scene_source;
 mod simulate;
 mod talk;
+mod techniques;
 mod validate;
 mod view;
 mod whole_file;

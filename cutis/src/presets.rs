@@ -1,6 +1,7 @@
 //! `cutis presets`: what ships inside.
 
 use crate::cli::{DIFFUSIONS, PresetsArgs};
+use crate::techniques::paper::Paper;
 use crate::{Outcome, talk};
 use cutis_optics::presets::{self, Preset};
 use cutis_optics::{Medium, RgbGaussianSum};
@@ -17,6 +18,7 @@ struct Inventory {
     heads: Vec<Named>,
     environments: Vec<Named>,
     techniques: Vec<String>,
+    papers: Vec<String>,
     diffusions: Vec<String>,
     tone_mappers: Vec<String>,
     layers: Vec<String>,
@@ -67,6 +69,7 @@ impl Inventory {
                 description: "made by code, with key and rim light; around the built-in head and scenes without light",
             }],
             techniques: TechniqueName::ALL.iter().map(ToString::to_string).collect(),
+            papers: Paper::ALL.map(|paper| paper.to_string()).to_vec(),
             diffusions: DIFFUSIONS.map(|d| d.to_string()).to_vec(),
             tone_mappers: ToneMapper::ALL.map(|t| t.to_string()).to_vec(),
             layers: Aov::all().iter().map(Aov::to_string).collect(),
@@ -86,6 +89,7 @@ impl Inventory {
         }
         let lists = [
             ("techniques", &self.techniques),
+            ("papers (--as-in)", &self.papers),
             ("diffusions", &self.diffusions),
             ("tone mappers", &self.tone_mappers),
             ("layers (--aov)", &self.layers),

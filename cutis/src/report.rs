@@ -2,6 +2,7 @@
 
 use crate::job::Job;
 use crate::machine::peak_memory_mib;
+use crate::techniques::report::TechniqueReport;
 use cutis_render::film::{LayerFile, Written};
 use cutis_render::passes::seams::DiffusionReport;
 use cutis_render::{PassTime, Renderer};
@@ -13,11 +14,19 @@ use std::time::Duration;
 pub struct Report {
     version: &'static str,
     technique: String,
+    /// Numbers that the technique has of its own; null if it has none.
+    technique_settings: Option<TechniqueReport>,
+    /// The paper whose numbers were the defaults.
+    as_in: Option<String>,
     diffusion: String,
     backend: String,
     adapter: String,
     width: u32,
     height: u32,
+    /// Preset in place of the materials of the scene.
+    material: Option<String>,
+    /// Length to which the scene was scaled.
+    longest_side_mm: Option<f32>,
     samples_per_pixel: u32,
     seed: u64,
     passes: Vec<Pass>,
@@ -60,11 +69,15 @@ impl Report {
             diffusion_reports: diffusion_reports.to_vec(),
             version: env!("CARGO_PKG_VERSION"),
             technique: settings.technique.to_string(),
+            technique_settings: TechniqueReport::of(settings.technique, &settings.techniques),
+            as_in: job.paper.map(|paper| paper.to_string()),
             diffusion: settings.diffusion.to_string(),
             backend: renderer.backend().to_owned(),
             adapter: renderer.adapter(),
             width: settings.width,
             height: settings.height,
+            material: job.source.material.clone(),
+            longest_side_mm: job.source.longest_side_mm,
             samples_per_pixel: settings.samples_per_pixel,
             seed: settings.seed,
             passes: passes.iter().map(Pass::new).collect(),

@@ -3,8 +3,8 @@
 use cutis_scene::head::{self, HeadDetail};
 use cutis_scene::studio::{STUDIO_BACKGROUND, studio_environment, studio_lights};
 use cutis_scene::{
-    Camera, ColourMap, ColourSpace, Environment, NormalMap, NormalSpace, ReadOptions, ScalarMap, Scene,
-    SceneError, Texture, read_image, read_scene,
+    Camera, ColourMap, ColourSpace, Environment, NormalMap, NormalSpace, ReadOptions, ScalarMap, Scattering,
+    Scene, SceneError, Texture, read_image, read_scene,
 };
 use glam::Vec3;
 use std::path::{Path, PathBuf};
@@ -27,6 +27,10 @@ pub struct SceneSource {
     pub environment: Option<PathBuf>,
     /// How fine the built-in head is.
     pub detail: HeadDetail,
+    /// Preset that takes the place of every material's own scattering.
+    pub material: Option<String>,
+    /// Longest side of the box around the scene, mm, to which all of it is scaled.
+    pub longest_side_mm: Option<f32>,
 }
 
 impl SceneSource {
@@ -43,6 +47,16 @@ impl SceneSource {
                 radiance_scale: Vec3::ONE,
                 visible: true,
             });
+        }
+        if let Some(material) = &self.material {
+            let scattering = Scattering::Preset(material.clone());
+            scene.objects.iter_mut().for_each(|object| object.material.scattering = scattering.clone());
+        }
+        // A scene of one point has no size that could be scaled.
+        if let Some((wanted_mm, now_mm)) = self.longest_side_mm.zip(scene.longest_side_mm())
+            && now_mm > 0.0
+        {
+            scene.scale(wanted_mm / now_mm);
         }
         Ok(scene)
     }

@@ -128,6 +128,10 @@ fn words_that_make_no_sense_are_refused_before_the_work() {
         (&["--techniques", "raytrace"], "--techniques: there is no technique 'raytrace'; there are"),
         (&["--techniques", "texture-space/magic"], "there is no diffusion 'magic'; there are none"),
         (&["--techniques", "texture-space,"], "there is no technique ''"),
+        (&["--techniques", "wrap:wrap=2"], "--techniques: wrap:wrap=2: --wrap: wrap must be 0 to 1, got 2"),
+        (&["--techniques", "wrap:blur-passes=2"], "--blur-passes has no effect: the technique is wrap"),
+        (&["--wrap", "2"], "--wrap: wrap must be 0 to 1, got 2"),
+        (&["--backend", "abacus"], "auto, cpu, gpu"),
         (&["--reference", "magic"], "--reference: there is no technique 'magic'"),
         (&["-o", "page.toml"], "page.toml: this file is written as .html"),
         (&["-o", "nowhere/page.html"], "there is no folder nowhere"),
@@ -144,4 +148,68 @@ fn words_that_make_no_sense_are_refused_before_the_work() {
         assert_refused(folder.path(), &[&["compare"], *args].concat(), words);
     }
     assert_eq!(names(folder.path()), ["bad.toml"], "nothing was written");
+}
+
+/// A small head, for comparisons that need no detail.
+const HEAD: &str = "[mesh]\nbuiltin = \"head\"\ntriangles = 2000\nmap_size = 64\n";
+
+#[test]
+fn every_technique_is_on_the_page_and_entries_have_numbers_of_their_own() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("head.toml"), HEAD).expect("written");
+    let techniques = "wrap:scatter-colour=0.5,0,0,depth-absorption,texture-blur,texture-space,image-space:profile-samples=2";
+    let wanted = ["compare", "head.toml", "--techniques", techniques, "--reference", "image-space", "--json"];
+    let small = ["--size", "32x32", "--irradiance-size", "64", "--samples", "1"];
+    let flags = ["--profile-samples", "4", "--blur-passes", "2"];
+    let output = run(folder.path(), &[&wanted[..], &small, &flags].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let json: serde_json::Value = serde_json::from_str(&stdout(&output)).expect("one object");
+    let rows = json["techniques"].as_array().expect("a list");
+    let names: Vec<_> = rows.iter().map(|row| row["name"].as_str().expect("a name")).collect();
+    let expected = [
+        "wrap:scatter-colour=0.5,0,0",
+        "depth-absorption",
+        "texture-blur",
+        "texture-space",
+        "image-space:profile-samples=2",
+        "image-space",
+    ];
+    assert_eq!(names, expected);
+    assert_eq!(rows[0]["technique_settings"]["scatter_colour_rgb"][0], 0.5);
+    assert_eq!(rows[2]["technique_settings"]["passes"], 2, "the flag is for all");
+    assert!(rows[3]["technique_settings"].is_null());
+    assert_eq!(rows[4]["technique_settings"]["samples"], 2, "an entry's own number wins");
+    assert_eq!(rows[5]["technique_settings"]["samples"], 4);
+    for row in &rows[..5] {
+        let rmse = row["parts"][0]["rmse"].as_f64().expect("a number");
+        assert!(rmse > 0.0 && rmse.is_finite(), "{row}");
+        assert_eq!(row["backend"], "cpu");
+    }
+    let page = std::fs::read_to_string(folder.path().join("report.html")).expect("written");
+    for name in expected {
+        assert!(page.contains(&format!("<h2>{name}")), "{name} has no card");
+    }
+}
+
+#[test]
+fn an_adapter_draws_what_it_knows_and_the_processor_the_rest() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("head.toml"), HEAD).expect("written");
+    let wanted =
+        ["compare", "head.toml", "--techniques", "texture-space,truth", "--backend", "gpu", "--json"];
+    let small = ["--size", "16x16", "--irradiance-size", "64", "--samples", "1", "--close-holes"];
+    let output = run(folder.path(), &[&wanted[..], &small, &["--reference-samples", "2"]].concat());
+    if stderr(&output).contains("there is no graphics adapter") {
+        let required = std::env::var_os("CUTIS_REQUIRE_GPU").is_some_and(|v| v == "1");
+        assert!(!required, "{}", stderr(&output));
+        eprintln!("SKIPPED: an_adapter_draws_what_it_knows_and_the_processor_the_rest: no adapter");
+        return;
+    }
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let json: serde_json::Value = serde_json::from_str(&stdout(&output)).expect("one object");
+    let backends = [0, 1].map(|i| json["techniques"][i]["backend"].as_str().expect("a name").to_owned());
+    assert_eq!(backends, ["gpu", "cpu"]);
+    let words = "backend gpu: the processor, because the technique truth is not drawn on graphics adapters";
+    assert!(stderr(&output).contains(words), "{}", stderr(&output));
+    assert!(json["techniques"][0]["adapter"].as_str().is_some_and(|name| !name.is_empty()));
 }

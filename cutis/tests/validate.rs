@@ -52,7 +52,8 @@ fn a_bound_that_is_missed_ends_with_code_1() {
     // The opaque surface lets nothing through; a bound of nearly nothing is missed by it.
     let bounds = "[sphere]\n\"texture-space/none\" = { relative_rmse = 0.01, bias_rgb = [0.9, 0.9, 0.9], flip_hdr = 1.0 }\n";
     std::fs::write(folder.path().join("bounds.toml"), bounds).expect("written");
-    let output = sphere(folder.path(), &["--table"]);
+    let few = ["--techniques", "texture-space,texture-space/none"];
+    let output = sphere(folder.path(), &[&["--table"][..], &few].concat());
     let (said, told) = (stdout(&output), stderr(&output));
     assert_eq!(output.status.code(), Some(1), "{told}");
     assert!(told.contains("worse than its bound: sphere, texture-space/none: relative RMSE"), "{told}");
@@ -60,7 +61,10 @@ fn a_bound_that_is_missed_ends_with_code_1() {
     let lines: Vec<_> = said.lines().collect();
     assert!(lines[0].starts_with("| scene | technique | relative RMSE, %"), "{said}");
     assert!(lines[1].starts_with("|---|") && lines[2].starts_with("| sphere | texture-space |"), "{said}");
-    assert!(lines.iter().all(|line| line.matches('|').count() == 7), "{said}");
+    assert!(lines[..4].iter().all(|line| line.matches('|').count() == 7), "{said}");
+    assert_eq!((lines[4], lines[5]), ("", "| relative RMSE, % | sphere | ms |"), "{said}");
+    assert!(lines[6..].iter().all(|line| line.matches('|').count() == 4), "{said}");
+    assert_eq!(lines.len(), 9, "two techniques and two heads: {said}");
 }
 
 #[test]
@@ -95,6 +99,10 @@ fn words_that_make_no_sense_are_refused_before_the_work() {
         (
             &["--only", "cube"],
             "--only: there is no scene 'cube'; there are shadow-edge, sphere, thin-slab, gap",
+        ),
+        (
+            &["--techniques", "truth"],
+            "--techniques: there is no entry 'truth'; there are wrap, depth-absorption",
         ),
         (&["--truth", "nowhere"], "nowhere: there is no such folder of truth"),
         (&["--truth", ".", "--update", "--samples", "15"], "--samples must be 16 to 1048576, got 15"),

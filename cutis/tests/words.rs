@@ -19,6 +19,11 @@ fn help_tells_units_ranges_and_defaults() {
         "[1 to 1048576, default 4]",
         "[fraction, 0 to 1, default 0.04]",
         "[possible values: none, separable]",
+        "[cosine, 0 to 1, default 0.2]",
+        "[mm, 0 to 1000, default 0.5]",
+        "[factor, 0 to 64, default 1]",
+        "[1 to 4096, default 32]",
+        "Technique image-space (Mertens et al. 2003):",
     ];
     for words in told {
         assert!(help.contains(words), "{words} is not in {help}");
@@ -93,7 +98,7 @@ fn presets_hold_the_measured_media_and_the_skin() {
     }
     let skin = materials.iter().find(|m| m["name"] == "three-layer-skin").expect("it is there");
     assert_eq!(skin["kernel"]["variances_mm2"].as_array().expect("a list").len(), 6);
-    for list in ["heads", "environments", "techniques", "tone_mappers", "layers"] {
+    for list in ["heads", "environments", "techniques", "papers", "tone_mappers", "layers"] {
         assert!(!json[list].as_array().expect("a list").is_empty(), "{list}");
     }
     let table = stdout(&run(folder.path(), &["presets"]));
@@ -108,6 +113,7 @@ fn completions_are_printed_for_every_shell() {
         assert!(output.status.success(), "{shell}");
         let script = stdout(&output);
         assert!(script.contains("cutis") && script.contains("tone-mapper"), "{shell}");
+        assert!(script.contains("absorption-ramp") && script.contains("as-in"), "{shell}");
     }
 }
 

@@ -1,6 +1,7 @@
 //! The words of `cutis compare`.
 
-use super::default_size;
+use super::{TechniqueArgs, default_size, names};
+use crate::backend::Backend;
 use clap::Args;
 use cutis_render::Settings;
 use cutis_render::difference::DEFAULT_PIXELS_PER_DEGREE;
@@ -11,14 +12,18 @@ use std::path::PathBuf;
 pub struct CompareArgs {
     /// Scene to render: .toml, .glb, .gltf or .obj; left out: the built-in head
     pub scene: Option<PathBuf>,
-    /// What to compare: TECHNIQUE or TECHNIQUE/DIFFUSION, such as texture-space,texture-space/none [default: every
-    /// technique]
-    #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
+    /// What to compare: TECHNIQUE, TECHNIQUE/DIFFUSION or TECHNIQUE:FLAG=VALUE, such as
+    /// texture-space,texture-space/none,image-space:profile-samples=64:jacobian=off; may be given several times [default:
+    /// every technique]
+    #[arg(long, value_name = "A,B,...")]
     pub techniques: Vec<String>,
     /// The one that the others are judged by; rendered too if it is not among them [default: truth if this build has it,
     /// otherwise the first]
     #[arg(long, value_name = "NAME")]
     pub reference: Option<String>,
+    /// Where it is computed; what graphics adapters do not draw is drawn by the processor
+    #[arg(long, value_name = "NAME", default_value_t = Backend::Cpu.to_string(), value_parser = names(Backend::ALL))]
+    pub backend: String,
     /// Page to write: one .html file that needs no other
     #[arg(short, long, value_name = "FILE", default_value = "report.html")]
     pub output: PathBuf,
@@ -53,4 +58,7 @@ pub struct CompareArgs {
     /// Sharpness of the view, for FLIP [pixels per degree of the visual angle, 1 to 1000]
     #[arg(long, value_name = "N", default_value_t = DEFAULT_PIXELS_PER_DEGREE, allow_negative_numbers = true)]
     pub pixels_per_degree: f64,
+    /// Of all entries that do not say it themselves.
+    #[command(flatten)]
+    pub own: TechniqueArgs,
 }

@@ -3,7 +3,7 @@
 use super::report::{PartReport, Report, Row};
 
 /// Names of the columns, units included.
-const HEADER: &str = "technique,diffusion,is_reference,part,rmse_w_per_m2_sr,relative_mse,\
+const HEADER: &str = "name,technique,diffusion,backend,is_reference,part,rmse_w_per_m2_sr,relative_mse,\
 bias_r_w_per_m2_sr,bias_g_w_per_m2_sr,bias_b_w_per_m2_sr,relative_bias_r,relative_bias_g,relative_bias_b,\
 flip_ldr_mean,flip_hdr_mean,milliseconds,peak_memory_mib,samples_per_pixel";
 
@@ -20,7 +20,8 @@ fn line(row: &Row, part: Option<&PartReport>) -> String {
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     let measured = part.map(|part| &part.measured);
     let name = part.map_or("picture", |part| part.part.words());
-    let head = [&row.technique, &row.diffusion, &row.is_reference.to_string(), name].map(quoted);
+    let is_reference = row.is_reference.to_string();
+    let head = [&row.name, &row.technique, &row.diffusion, &row.backend, &is_reference, name].map(quoted);
     let bias = [0, 1, 2].map(|c| number(measured.map(|m| m.bias_rgb[c])));
     let relative_bias = [0, 1, 2].map(|c| number(measured.and_then(|m| m.relative_bias_rgb[c])));
     let errors = [number(measured.map(|m| m.rmse)), number(measured.map(|m| m.relative_mse))];

@@ -2,10 +2,12 @@
 
 use super::entry::Entry;
 use super::job::Job;
+use crate::backend::Backend;
 use crate::machine::{forget_peak_memory, peak_memory_mib};
 use crate::measure::Seen;
 use crate::progress::Bar;
-use cutis_render::{Aov, CpuRenderer, Layer, PassTime, Renderer, Settings};
+use cutis_render::settings::TechniqueSettings;
+use cutis_render::{Aov, Layer, PassTime, Settings};
 use cutis_scene::Scene;
 use glam::Vec4;
 use miette::{Result, miette};
@@ -17,6 +19,12 @@ const STANDARD_ERROR: &str = "standard-error";
 /// A picture with what it took.
 pub struct Drawn {
     pub entry: Entry,
+    /// What drew it.
+    pub backend: String,
+    /// The machine that did.
+    pub adapter: String,
+    /// Numbers of its technique.
+    pub techniques: TechniqueSettings,
     pub samples_per_pixel: u32,
     /// The whole picture.
     pub picture: Seen,
@@ -35,17 +43,25 @@ pub struct Drawn {
 impl Drawn {
     /// Renders an entry of the job.
     pub fn new(job: &Job, index: usize, scene: &Scene, verbose: u8) -> Result<Self> {
-        let entry = job.entries[index];
+        let entry = job.entries[index].clone();
         let name = format!("{} of {}, {entry}: ", index + 1, job.entries.len());
-        Self::by(entry, &job.settings_of(index), scene, &name, verbose)
+        Self::by(job.backend, entry, &job.settings_of(index), scene, &name, verbose)
     }
 
     /// Renders a scene by an entry, whose technique and diffusion are in the settings; the name is for the progress.
-    pub fn by(entry: Entry, settings: &Settings, scene: &Scene, name: &str, verbose: u8) -> Result<Self> {
+    pub fn by(
+        backend: Backend,
+        entry: Entry,
+        settings: &Settings,
+        scene: &Scene,
+        name: &str,
+        verbose: u8,
+    ) -> Result<Self> {
         tracing::info!("{}", name.trim_end_matches([':', ' ']));
+        let renderer = backend.renderer_that_knows(settings.technique, scene)?;
         let counts_alone = forget_peak_memory();
         let (start, bar) = (Instant::now(), Bar::named(name, verbose));
-        let frame = CpuRenderer.render(scene, settings, &bar);
+        let frame = renderer.render(scene, settings, &bar);
         bar.finish();
         let milliseconds = start.elapsed().as_secs_f64() * 1e3;
         let frame = frame.map_err(|error| miette!("{entry}: {error}"))?;
@@ -61,6 +77,9 @@ impl Drawn {
         let standard_errors = layer(STANDARD_ERROR).map(|layer| layer.pixels.clone());
         Ok(Self {
             entry,
+            backend: renderer.backend().to_owned(),
+            adapter: renderer.adapter(),
+            techniques: settings.techniques.clone(),
             samples_per_pixel: settings.samples_per_pixel,
             diffuse,
             standard_errors,

@@ -1,11 +1,14 @@
 //! The arguments of `cutis compare`, checked.
 
-use super::entry::Entry;
+use super::entry::{Entry, entries_of};
+use crate::backend::Backend;
 use crate::cli::CompareArgs;
-use crate::job::{must_exist, refused, size, threads_in_range};
+use crate::job::{must_exist, named, refused, size, threads_in_range};
 use crate::measure::pixels_per_degree_in_range;
 use crate::scene_source::SceneSource;
+use crate::techniques::{Wish, fulfilled, wishes};
 use crate::whole_file;
+use cutis_render::settings::TechniqueSettings;
 use cutis_render::{Aov, Settings, TechniqueName};
 use cutis_scene::ReadOptions;
 use cutis_scene::head::HeadDetail;
@@ -27,6 +30,12 @@ pub struct Job {
     pub reference: usize,
     /// Settings of all entries; technique and diffusion come from the entry.
     pub settings: Settings,
+    /// Numbers of the technique of each entry.
+    pub techniques: Vec<TechniqueSettings>,
+    /// Where it is computed.
+    pub backend: Backend,
+    /// Wishes that have no effect, in words.
+    pub warnings: Vec<String>,
     /// Samples per pixel of the reference.
     pub reference_samples: u32,
     pub pixels_per_degree: f64,
@@ -46,6 +55,9 @@ impl Job {
         whole_file::check_distinct(&outputs)?;
         args.scene.as_deref().map_or(Ok(()), must_exist)?;
         let settings = settings(args)?;
+        let mut warnings = Vec::new();
+        let techniques = techniques(args, &entries, &mut warnings)?;
+        let backend = named("--backend", &args.backend, Backend::ALL.map(|b| (b.to_string(), b)))?;
         let reference_samples = args.reference_samples.unwrap_or_else(|| {
             let is_estimated = entries[reference].technique.is_estimated();
             if is_estimated { ESTIMATED_SAMPLES } else { args.samples }
@@ -57,10 +69,15 @@ impl Job {
                 options: ReadOptions::default(),
                 environment: None,
                 detail: HeadDetail::default(),
+                material: None,
+                longest_side_mm: None,
             },
             entries,
             reference,
             settings,
+            techniques,
+            backend,
+            warnings,
             reference_samples,
             pixels_per_degree: pixels_per_degree_in_range(args.pixels_per_degree)?,
             threads: threads_in_range(args.threads)?,
@@ -72,11 +89,13 @@ impl Job {
 
     /// Settings of one entry.
     pub fn settings_of(&self, index: usize) -> Settings {
-        let Entry { technique, diffusion } = self.entries[index];
+        let Entry { technique, diffusion, .. } = self.entries[index];
+        let techniques = self.techniques[index].clone();
         let is_reference = index == self.reference;
         let samples_per_pixel =
             if is_reference { self.reference_samples } else { self.settings.samples_per_pixel };
-        let mut settings = Settings { technique, diffusion, samples_per_pixel, ..self.settings.clone() };
+        let mut settings =
+            Settings { technique, techniques, diffusion, samples_per_pixel, ..self.settings.clone() };
         if is_reference && technique.is_estimated() {
             settings.aovs.push(Aov::StandardError);
         }
@@ -87,7 +106,7 @@ impl Job {
 /// What is rendered, each once, and which of them is the reference.
 fn entries(args: &CompareArgs) -> Result<(Vec<Entry>, usize)> {
     let mut entries: Vec<Entry> = Vec::new();
-    for words in &args.techniques {
+    for words in args.techniques.iter().flat_map(|list| entries_of(list)) {
         let entry = words.parse().map_err(|reason: String| miette!("--techniques: {reason}"))?;
         if !entries.contains(&entry) {
             entries.push(entry);
@@ -96,7 +115,7 @@ fn entries(args: &CompareArgs) -> Result<(Vec<Entry>, usize)> {
     if entries.is_empty() {
         entries = TechniqueName::ALL.iter().copied().map(Entry::usual).collect();
     }
-    let reference = reference(args)?.unwrap_or(entries[0]);
+    let reference = reference(args)?.unwrap_or_else(|| entries[0].clone());
     let index = entries.iter().position(|entry| *entry == reference).unwrap_or_else(|| {
         entries.push(reference);
         entries.len() - 1
@@ -110,6 +129,23 @@ fn reference(args: &CompareArgs) -> Result<Option<Entry>> {
         Some(words) => words.parse().map(Some).map_err(|reason: String| miette!("--reference: {reason}")),
         None => Ok(TRUTH.parse().ok()),
     }
+}
+
+/// Numbers of the technique of each entry: its own, else those of the flags.
+fn techniques(
+    args: &CompareArgs,
+    entries: &[Entry],
+    warnings: &mut Vec<String>,
+) -> Result<Vec<TechniqueSettings>> {
+    let wishes = wishes(&args.own, warnings)?;
+    let is_idle = |wish: &&Wish| entries.iter().all(|entry| entry.technique != wish.technique);
+    for Wish { flag, technique, .. } in wishes.iter().filter(is_idle) {
+        warnings.push(format!("{flag} has no effect: {technique} is not among the techniques"));
+    }
+    let of_flags = fulfilled(TechniqueSettings::default(), wishes)?;
+    let of_entry =
+        |entry: &Entry| entry.techniques(of_flags.clone()).map_err(|why| miette!("{entry}: {why}"));
+    entries.iter().map(of_entry).collect()
 }
 
 fn settings(args: &CompareArgs) -> Result<Settings> {

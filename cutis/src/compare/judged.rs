@@ -37,7 +37,7 @@ impl Part {
 pub fn judge(test: &Drawn, reference: &Drawn, pixels_per_degree: f64) -> Result<Vec<(Part, Measured)>> {
     let of = |part, a: &Seen, b: &Seen| {
         let measured = Measured::new(a, b, pixels_per_degree);
-        let (test, reference) = (test.entry, reference.entry);
+        let (test, reference) = (&test.entry, &reference.entry);
         measured
             .map(|measured| (part, measured))
             .map_err(|error| miette!("{test} against {reference}: {error}"))
@@ -127,6 +127,9 @@ mod tests {
     fn noise_is_that_of_the_standard_errors() {
         let pixels = vec![Vec4::ONE, Vec4::new(0.0, 0.0, 0.0, 1.0)];
         let drawn = Drawn {
+            backend: "cpu".to_owned(),
+            adapter: "none".to_owned(),
+            techniques: Default::default(),
             entry: Entry::usual(TechniqueName::TextureSpace),
             samples_per_pixel: 1,
             picture: Seen::developed(2, 1, pixels, 0.0),

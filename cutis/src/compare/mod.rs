@@ -88,7 +88,7 @@ fn warnings(job: &Job, scene: &Scene, compared: &Compared, missing: Vec<String>)
     });
     let of_drawn = compared.drawn.iter().flat_map(|drawn| drawn.warnings.iter().cloned());
     let mut all: Vec<String> = Vec::new();
-    let told = scene.warnings.iter().cloned().chain(of_drawn).chain(alone);
+    let told = job.warnings.iter().chain(&scene.warnings).cloned().chain(of_drawn).chain(alone);
     for warning in told.chain(noisy(job, compared)).chain(missing) {
         if !all.contains(&warning) {
             all.push(warning);

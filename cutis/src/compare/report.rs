@@ -5,6 +5,7 @@ use super::drawn::Drawn;
 use super::job::Job;
 use super::judged::{Noise, Part};
 use crate::measure::{Measured, MeasuredReport};
+use crate::techniques::report::TechniqueReport;
 use serde::Serialize;
 use std::fmt::Write;
 use std::time::Duration;
@@ -37,6 +38,10 @@ pub struct Row {
     pub name: String,
     pub technique: String,
     pub diffusion: String,
+    /// Numbers that the technique has of its own; null if it has none.
+    pub technique_settings: Option<TechniqueReport>,
+    pub backend: String,
+    pub adapter: String,
     pub is_reference: bool,
     pub samples_per_pixel: u32,
     pub milliseconds: f64,
@@ -126,6 +131,9 @@ impl Row {
             name: drawn.entry.to_string(),
             technique: drawn.entry.technique.to_string(),
             diffusion: drawn.entry.diffusion.to_string(),
+            technique_settings: TechniqueReport::of(drawn.entry.technique, &drawn.techniques),
+            backend: drawn.backend.clone(),
+            adapter: drawn.adapter.clone(),
             is_reference,
             samples_per_pixel: drawn.samples_per_pixel,
             milliseconds: drawn.milliseconds,

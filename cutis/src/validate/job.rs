@@ -23,7 +23,10 @@ pub struct Job {
     /// What is judged.
     pub entries: Vec<Entry>,
     pub folder: PathBuf,
+    /// Whether the truth is rendered anew.
     pub update: bool,
+    /// Whether what is measured is taken for the bounds.
+    pub accept: bool,
     pub truth_samples: u32,
     /// Where pictures to look at go.
     pub pictures: Option<PathBuf>,
@@ -34,9 +37,10 @@ impl Job {
     pub fn new(args: &ValidateArgs) -> Result<Self> {
         let job = Self {
             scenes: scenes(&args.only)?,
-            entries: entries(),
+            entries: entries(&args.techniques)?,
             folder: args.truth.clone(),
             update: args.update,
+            accept: args.update || args.accept,
             truth_samples: args.samples.unwrap_or(TRUTH_SAMPLES),
             pictures: args.pictures.clone(),
         };
@@ -58,7 +62,7 @@ impl Job {
     }
 
     /// Settings of an entry.
-    pub fn settings(&self, entry: Entry) -> Settings {
+    pub fn settings(&self, entry: &Entry) -> Settings {
         Settings {
             technique: entry.technique,
             diffusion: entry.diffusion,
@@ -79,7 +83,7 @@ impl Job {
         Settings {
             samples_per_pixel: self.truth_samples,
             aovs: vec![Aov::Specular, Aov::StandardError],
-            ..self.settings(Entry::usual(TechniqueName::Truth))
+            ..self.settings(&Entry::usual(TechniqueName::Truth))
         }
     }
 
@@ -89,11 +93,17 @@ impl Job {
     }
 }
 
-/// Every technique but the truth itself, and the opaque surface.
-fn entries() -> Vec<Entry> {
+/// Every technique but the truth itself, and the opaque surface; only those that are named, if some are.
+fn entries(only: &[String]) -> Result<Vec<Entry>> {
     let judged = TechniqueName::ALL.iter().filter(|technique| **technique != TechniqueName::Truth);
-    let opaque = Entry { technique: TechniqueName::TextureSpace, diffusion: Diffusion::None };
-    judged.map(|technique| Entry::usual(*technique)).chain([opaque]).collect()
+    let opaque = Entry { diffusion: Diffusion::None, ..Entry::usual(TechniqueName::TextureSpace) };
+    let all: Vec<_> = judged.map(|technique| Entry::usual(*technique)).chain([opaque]).collect();
+    if let Some(unknown) = only.iter().find(|name| all.iter().all(|entry| entry.to_string() != **name)) {
+        let known = all.iter().map(Entry::to_string).collect::<Vec<_>>().join(", ");
+        bail!("--techniques: there is no entry '{unknown}'; there are {known}");
+    }
+    let wanted = |entry: &Entry| only.is_empty() || only.contains(&entry.to_string());
+    Ok(all.into_iter().filter(wanted).collect())
 }
 
 /// The scenes of these names in their usual order, each once; all if none are named.
@@ -112,7 +122,7 @@ mod tests {
 
     #[test]
     fn the_truth_is_not_judged_and_all_else_is() {
-        let names: Vec<_> = entries().iter().map(Entry::to_string).collect();
+        let names: Vec<_> = entries(&[]).expect("all").iter().map(Entry::to_string).collect();
         assert_eq!(names.len(), TechniqueName::ALL.len(), "one less, and the opaque surface");
         assert!(!names.contains(&"truth".to_owned()) && names.contains(&"texture-space/none".to_owned()));
     }

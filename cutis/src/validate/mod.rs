@@ -10,6 +10,7 @@ mod pictures;
 mod report;
 mod stored;
 
+use crate::backend::Backend;
 use crate::cli::ValidateArgs;
 use crate::compare::drawn::Drawn;
 use crate::compare::entry::Entry;
@@ -90,16 +91,16 @@ fn judge(
     let unmeasured = |error| miette!("{name}: {error}");
     let truth_noise = truth.noise().map_err(unmeasured)?;
     let mut entries = Vec::new();
-    for &entry in &job.entries {
+    for entry in &job.entries {
         let mut judged = judge_entry(job, name, entry, &scene, &truth, warnings, verbose)?;
-        if job.update {
+        if job.accept {
             bounds.accept(name, &judged.name, &judged.errors);
         }
         judged.bound = bounds.get(name, &judged.name).copied();
         judged.worse = judged.bound.map_or(Vec::new(), |b| worse(&judged.errors, &b, &judged.spread));
         entries.push(judged);
     }
-    if job.update {
+    if job.accept {
         let text = bounds.text()?;
         whole_file::write_all(&[(Bounds::path(&job.folder).as_path(), text.as_bytes())])?;
     }
@@ -109,13 +110,14 @@ fn judge(
 fn judge_entry(
     job: &Job,
     name: &str,
-    entry: Entry,
+    entry: &Entry,
     scene: &Scene,
     truth: &Truth,
     warnings: &mut Vec<String>,
     verbose: u8,
 ) -> Result<EntryReport> {
-    let drawn = Drawn::by(entry, &job.settings(entry), scene, &format!("{name}, {entry}: "), verbose)?;
+    let words = format!("{name}, {entry}: ");
+    let drawn = Drawn::by(Backend::Cpu, entry.clone(), &job.settings(entry), scene, &words, verbose)?;
     // Scenes share their medium, and with it most of what is worth knowing.
     for warning in &drawn.warnings {
         if !warnings.contains(warning) {

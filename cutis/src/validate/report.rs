@@ -68,7 +68,7 @@ impl Report {
         text
     }
 
-    /// For a document.
+    /// For a document: all numbers, then one of them at a glance.
     pub fn table(&self) -> String {
         let mut text =
             "| scene | technique | relative RMSE, % | bias R, G, B, % | HDR-FLIP | noise of the truth, % |\n\
@@ -85,6 +85,22 @@ impl Report {
                 entry.errors.flip_hdr,
                 percent(scene.truth_noise)
             );
+        }
+        if self.scenes.is_empty() { text } else { text + "\n" + &self.glance() }
+    }
+
+    /// Relative RMSE in percent, a row for each technique and a column for each scene, and the mean time.
+    fn glance(&self) -> String {
+        let names: Vec<_> = self.scenes.iter().map(|scene| scene.name).collect();
+        let mut text = format!("| relative RMSE, % | {} | ms |\n", names.join(" | "));
+        text += &format!("|---|{}---:|\n", "---:|".repeat(names.len()));
+        for (i, entry) in self.scenes[0].entries.iter().enumerate() {
+            // Every scene is drawn by the same entries in the same order.
+            let of_entry: Vec<_> = self.scenes.iter().map(|scene| &scene.entries[i]).collect();
+            let cells = of_entry.iter().map(|e| format!("{:.1} |", percent(e.errors.relative_rmse)));
+            let milliseconds: f64 = of_entry.iter().map(|e| e.milliseconds).sum();
+            let mean = milliseconds / of_entry.len() as f64;
+            text += &format!("| {} | {} {mean:.0} |\n", entry.name, cells.collect::<Vec<_>>().join(" "));
         }
         text
     }

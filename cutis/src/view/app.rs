@@ -9,6 +9,8 @@ use super::side::Side;
 use super::turntable::Turntable;
 use super::{canvas, help, panel};
 use crate::scene_source::SceneSource;
+use crate::techniques::paper::Paper;
+use crate::techniques::take_own;
 use cutis_render::TechniqueName;
 use cutis_scene::Scene;
 use eframe::egui::{CentralPanel, Context, Event, InputState, Panel, Ui};
@@ -34,6 +36,8 @@ pub struct Viewer {
     pub split: Option<f32>,
     /// What is to be seen.
     pub shown: Shown,
+    /// Width and height of the picture, pixels, where it is not as large as the window leaves room.
+    pub size: Option<[u32; 2]>,
     /// Number of the light that follows the mouse.
     pub light: usize,
     /// What was drawn.
@@ -73,6 +77,7 @@ impl Viewer {
             edited: 0,
             split: None,
             shown: Shown::default(),
+            size: None,
             light: 0,
             sides: [Side::default(), Side::default()],
             folder: PathBuf::from("."),
@@ -212,6 +217,22 @@ impl Viewer {
         let views = self.views();
         let now = views.iter().position(|view| *view == self.shown.view);
         now.and_then(|i| views.get(i + 1)).copied().unwrap_or_default()
+    }
+
+    /// Draws the edited side with the numbers that a paper has for its technique, and what was before its camera. The scene is shared by both
+    /// sides: instead of it, the mean free path is scaled, which comes to the same.
+    pub fn draw_as_in(&mut self, paper: Paper) {
+        let look = &mut self.looks[self.edited];
+        let of_paper = paper.settings(look.drawing.techniques.clone());
+        take_own(&mut look.drawing.techniques, &of_paper, look.drawing.technique);
+        let Some(stage) = paper.stage() else { return };
+        self.size = Some(stage.size);
+        look.skin.preset = Some(stage.material.to_owned());
+        // Gaussians of another kernel have other numbers.
+        look.drawing.muted_gaussians.clear();
+        if let Some(side_mm) = self.scene.longest_side_mm().filter(|side_mm| *side_mm > 0.0) {
+            look.skin.free_path = [side_mm / stage.longest_side_mm; 3];
+        }
     }
 
     /// Sees the whole scene, from where the camera is.

@@ -27,24 +27,33 @@ pub fn show(viewer: &mut Viewer, ui: &mut Ui) -> [u32; 2] {
     // Both sides by the same factor: the picture keeps its shape.
     let most = ui.input(|input| input.max_texture_side.min(MAX_PIXELS)) as f32;
     let shrunk = pixels * (most / pixels.max_elem().max(1.0)).min(1.0);
-    let size = [shrunk.x, shrunk.y].map(|side| (side as u32).max(1));
+    let room = [shrunk.x, shrunk.y].map(|side| (side as u32).max(1));
+    let size = viewer.size.unwrap_or(room);
     match viewer.shown.view {
         View::Maps => maps(viewer, ui),
         View::Map(aov) => map(viewer, ui, aov),
-        View::Picture | View::Layer(_) => picture(viewer, ui, rect),
+        View::Picture | View::Layer(_) => picture(viewer, ui, rect, size),
     }
     tell_failure(viewer, &ui.painter_at(rect), rect);
     size
 }
 
-fn picture(viewer: &mut Viewer, ui: &mut Ui, rect: Rect) {
+/// As large as a picture of this shape fits in, in the middle.
+fn fitted(room: Rect, size: [u32; 2]) -> Rect {
+    let size = vec2(size[0] as f32, size[1] as f32);
+    let fits = size * (room.size() / size).min_elem();
+    Rect::from_center_size(room.center(), fits)
+}
+
+fn picture(viewer: &mut Viewer, ui: &mut Ui, room: Rect, size: [u32; 2]) {
+    ui.painter_at(room).rect_filled(room, 0.0, Color32::BLACK);
+    let rect = if viewer.size.is_some() { fitted(room, size) } else { room };
     let response = ui.allocate_rect(rect, Sense::click_and_drag());
     let on_line = drag_line(viewer, ui, &response);
     if !on_line && let Some(movement) = movement(ui, &response) {
         move_by(viewer, movement);
     }
     let painter = ui.painter_at(rect);
-    painter.rect_filled(rect, 0.0, Color32::BLACK);
     let line = viewer.split.map_or(1.0, |share| share.clamp(0.0, 1.0));
     part(&painter, viewer.sides[0].texture.as_ref(), rect, [0.0, line]);
     if viewer.split.is_some() {

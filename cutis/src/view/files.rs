@@ -102,6 +102,8 @@ mod tests {
     #[test]
     fn an_environment_joins_the_scene_and_a_head_replaces_it() {
         let now = SceneSource {
+            material: None,
+            longest_side_mm: None,
             file: Some("head.obj".into()),
             options: ReadOptions::default(),
             environment: None,

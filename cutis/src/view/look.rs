@@ -3,9 +3,10 @@
 use super::painter::Developing;
 use super::shown::Shown;
 use crate::backend::Backend;
+use crate::techniques::take_own;
 use cutis_render::film::Film;
 use cutis_render::prepare::kernel::stretched;
-use cutis_render::settings::Quality;
+use cutis_render::settings::{Quality, TechniqueSettings};
 use cutis_render::{Diffusion, RenderError, Settings, TechniqueName};
 use cutis_scene::{Camera, Environment, Light, Material, Pose, PoseError, ScalarMap, Scattering, Scene};
 use glam::{Quat, Vec3};
@@ -79,6 +80,8 @@ pub struct SkinLook {
 pub struct Drawing {
     /// Method.
     pub technique: TechniqueName,
+    /// Numbers of each technique of its own; they stay while another one draws.
+    pub techniques: TechniqueSettings,
     /// How light spreads.
     pub diffusion: Diffusion,
     /// Where it is computed.
@@ -94,6 +97,14 @@ pub struct Drawing {
 }
 
 impl Drawing {
+    /// Whether the same is drawn: numbers of techniques that do not draw are no matter.
+    fn is_like(&self, other: &Self) -> bool {
+        let mut techniques = self.techniques.clone();
+        take_own(&mut techniques, &other.techniques, self.technique);
+        let others = Self { techniques: other.techniques.clone(), ..self.clone() };
+        techniques == self.techniques && others == *other
+    }
+
     /// Chooses a quality, with the texture that belongs to it; `auto` is what the window begins with.
     pub fn set_quality(&mut self, quality: Quality) {
         self.quality = quality;
@@ -181,7 +192,7 @@ impl Look {
             && self.surroundings == other.surroundings
             && self.pose == other.pose
             && self.skin == other.skin
-            && self.drawing == other.drawing
+            && self.drawing.is_like(&other.drawing)
     }
 }
 

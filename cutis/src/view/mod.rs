@@ -27,7 +27,7 @@ use crate::job::{must_exist, named};
 use crate::scene_source::SceneSource;
 use app::Viewer;
 use cutis_render::Settings;
-use cutis_render::settings::Quality;
+use cutis_render::settings::{Quality, TechniqueSettings};
 use cutis_scene::ReadOptions;
 use cutis_scene::head::HeadDetail;
 use eframe::egui;
@@ -67,6 +67,8 @@ fn source(args: &ViewArgs) -> Result<SceneSource> {
         options,
         environment: args.environment.clone(),
         detail: HeadDetail::default(),
+        material: None,
+        longest_side_mm: None,
     })
 }
 
@@ -75,6 +77,7 @@ impl Default for Drawing {
         let Settings { technique, diffusion, gaussians, .. } = Settings::default();
         Self {
             technique,
+            techniques: TechniqueSettings::default(),
             diffusion,
             backend: Backend::Auto,
             quality: Quality::Auto,

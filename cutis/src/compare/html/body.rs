@@ -182,9 +182,10 @@ fn passes(row: &Row) -> String {
         })
         .collect();
     format!(
-        "<details><summary>Passes: {:.0} ms in all</summary><table class=\"passes\"><thead><tr><th>Pass</th>\
+        "<details><summary>Passes: {:.0} ms in all, by {}</summary><table class=\"passes\"><thead><tr><th>Pass</th>\
          <th>ms</th><th></th></tr></thead><tbody>{lines}</tbody></table></details>",
-        row.milliseconds
+        row.milliseconds,
+        escaped(&format!("{}, {}", row.backend, row.adapter))
     )
 }
 

@@ -1,11 +1,12 @@
 //! Draws one side of the window, and keeps what the next picture of it can be drawn from.
 
+use super::mean::Mean;
 use super::on_cpu::OnCpu;
 use super::on_gpu::{Devices, OnGpu};
-use super::stage::Stage;
+use super::stage::{Stage, rounds};
 use super::watch::Watch;
 use super::{Desk, Painted, Wish, Work};
-use crate::backend::Backend;
+use crate::backend::{Backend, unknown};
 use crate::view::look::Look;
 use crate::view::screen;
 use cutis_gpu::GpuRenderer;
@@ -21,6 +22,8 @@ use std::time::Instant;
 pub struct Artist {
     cpu: OnCpu,
     pub(super) gpu: OnGpu,
+    /// Of the pictures with other patterns that were drawn of a wish.
+    mean: Option<Mean>,
 }
 
 /// A frame, and what it was drawn with.
@@ -52,22 +55,26 @@ pub struct Subject<'a> {
 }
 
 impl Artist {
-    /// Draws a look of a wish. None if something else is wanted by now.
+    /// Draws a look of a wish; round 0 is the picture of a stage itself, the others are taken into the mean with it. None if
+    /// something else is wanted by now.
     pub fn paint(
         &mut self,
         devices: &mut Devices,
         wish: &Wish,
         side: usize,
-        stage: Stage,
+        (stage, round): (Stage, u32),
         desk: &Desk,
     ) -> Result<Option<Painted>, String> {
         let start = Instant::now();
         let look = &wish.looks[side];
         let mut settings = stage.settings(&look.drawing, wish.size);
         settings.aovs = wish.shown.layers(look.drawing.technique);
+        settings.techniques.image_space.round = round;
+        let rounds = if stage == Stage::Fine { rounds(wish, side) } else { 1 };
         let finish = |drawn: Drawn, quality: String, is_final: bool| Painted {
             number: wish.number,
             side,
+            technique: look.drawing.technique,
             camera: look.camera,
             quality,
             is_final,
@@ -88,18 +95,32 @@ impl Artist {
         let subject = Subject {
             scene: &wish.scene,
             look,
-            film: settings.aovs.is_empty().then_some(look.film),
+            // A mean is developed here: the adapter has but the last picture of it.
+            film: (settings.aovs.is_empty() && round == 0).then_some(look.film),
             settings,
             wants_maps: wish.shown.wants_maps(),
         };
         match self.draw(devices, &subject, &watch) {
-            Ok(drawn) => Ok(Some(finish(drawn, stage.name().to_owned(), stage == Stage::Fine))),
+            Ok(mut drawn) => {
+                self.average(&mut drawn.frame, round, rounds);
+                let is_last = stage == Stage::Fine && round + 1 == rounds;
+                Ok(Some(finish(drawn, quality(stage, round, rounds), is_last)))
+            }
             Err(RenderError::Stopped) => Ok(None),
             Err(error) => Err(error.to_string()),
         }
     }
 
-    /// On the machine that was chosen; `auto` goes from a graphics processor that fails to the processor.
+    /// Makes the mean of all rounds of a frame.
+    fn average(&mut self, frame: &mut Frame, round: u32, rounds: u32) {
+        match &mut self.mean {
+            Some(mean) if round > 0 && mean.count() == round => mean.take_in(frame),
+            mean => *mean = (rounds > 1).then(|| Mean::of(frame)),
+        }
+    }
+
+    /// On the machine that was chosen; from a graphics processor that fails `auto` goes to the processor, and everyone does
+    /// with a technique that is not drawn there.
     fn draw(
         &mut self,
         devices: &mut Devices,
@@ -108,18 +129,34 @@ impl Artist {
     ) -> Result<Drawn, RenderError> {
         let technique = subject.look.drawing.technique;
         let backend = subject.look.drawing.backend;
-        if backend == Backend::Cpu || (backend == Backend::Auto && !GpuRenderer::knows(technique)) {
+        if backend == Backend::Cpu {
             return self.cpu.draw(subject, watch);
+        }
+        if !GpuRenderer::knows(technique) {
+            return self.on_processor(subject, watch, &unknown(technique));
         }
         match self.gpu.draw(devices, subject, watch) {
             Ok(drawn) => Ok(drawn),
             Err(RenderError::Backend { reason }) if backend == Backend::Auto => {
-                let mut drawn = self.cpu.draw(subject, watch)?;
-                drawn.frame.warnings.push(format!("drawn on the processor, because {reason}"));
-                Ok(drawn)
+                self.on_processor(subject, watch, &reason)
             }
             Err(error) => Err(error),
         }
+    }
+
+    /// On the processor, in place of an adapter.
+    fn on_processor(&mut self, subject: &Subject, watch: &Watch, why: &str) -> Result<Drawn, RenderError> {
+        let mut drawn = self.cpu.draw(subject, watch)?;
+        drawn.frame.warnings.push(format!("drawn on the processor, because {why}"));
+        Ok(drawn)
+    }
+}
+
+/// How good a picture is, in words.
+fn quality(stage: Stage, round: u32, rounds: u32) -> String {
+    match round {
+        0 => stage.name().to_owned(),
+        _ => format!("{}, {} of {rounds} rounds", stage.name(), round + 1),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Draws in the background: the latest wish first as a quick draft, then ever better while nothing changes.
 
 mod artist;
+mod mean;
 mod on_cpu;
 mod on_gpu;
 mod stage;
@@ -14,11 +15,11 @@ use super::shown::Shown;
 use artist::Artist;
 use cutis_gpu::cost::Cost;
 use cutis_render::film::Film;
-use cutis_render::{Frame, Layer};
+use cutis_render::{Frame, Layer, TechniqueName};
 use cutis_scene::{Camera, Pose, Scene};
 use eframe::egui;
 use on_gpu::Devices;
-use stage::Stage;
+use stage::{Stage, rounds};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -58,6 +59,8 @@ pub struct Painted {
     pub number: u64,
     /// Which of its looks.
     pub side: usize,
+    /// By which method.
+    pub technique: TechniqueName,
     /// From where it is seen.
     pub camera: Camera,
     /// How good it is by now, in words.
@@ -203,15 +206,44 @@ impl Studio {
                 if failed[side] || is_skipped || !stage.is_for(look.drawing.technique) {
                     continue;
                 }
-                match self.sides[side].paint(&mut self.devices, wish, side, stage, desk) {
-                    Ok(Some(painted)) => desk.tell(News::Painted(Box::new(painted))),
-                    Ok(None) => return,
-                    Err(reason) => {
-                        failed[side] = true;
-                        desk.tell(News::Failed { number: wish.number, side, reason });
-                    }
+                match self.paint(wish, side, (stage, 0), desk) {
+                    Some(is_drawn) => failed[side] = !is_drawn,
+                    None => return,
                 }
             }
         }
+        self.refine(wish, failed, desk);
+    }
+
+    /// Draws what is not estimated by chance, but with a pattern, again with other patterns, for the mean of all.
+    fn refine(&mut self, wish: &Wish, mut failed: [bool; 2], desk: &Desk) {
+        let most = (0..wish.looks.len()).map(|side| rounds(wish, side)).max().unwrap_or(1);
+        for round in 1..most {
+            for side in 0..wish.looks.len() {
+                if desk.wishes.has_news() {
+                    return;
+                }
+                if failed[side] || round >= rounds(wish, side) {
+                    continue;
+                }
+                match self.paint(wish, side, (Stage::Fine, round), desk) {
+                    Some(is_drawn) => failed[side] = !is_drawn,
+                    None => return,
+                }
+            }
+        }
+    }
+
+    /// Draws a side and tells it. Whether that could be done; none if something else is wanted by now.
+    fn paint(&mut self, wish: &Wish, side: usize, step: (Stage, u32), desk: &Desk) -> Option<bool> {
+        match self.sides[side].paint(&mut self.devices, wish, side, step, desk) {
+            Ok(Some(painted)) => desk.tell(News::Painted(Box::new(painted))),
+            Ok(None) => return None,
+            Err(reason) => {
+                desk.tell(News::Failed { number: wish.number, side, reason });
+                return Some(false);
+            }
+        }
+        Some(true)
     }
 }

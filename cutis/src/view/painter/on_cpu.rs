@@ -28,9 +28,16 @@ impl Kept {
     /// Better light than is asked for is welcome.
     fn serves(&self, subject: &Subject) -> bool {
         Arc::ptr_eq(&self.scene, subject.scene)
-            && self.look.is_lit_like(subject.look)
+            && self.look.is_lit_like(&self.with_own_wrap(subject.look))
             && self.irradiance_size >= subject.settings.irradiance_size
             && self.shadow_samples >= subject.settings.shadow_samples
+    }
+
+    /// The numbers of `wrap` are asked for by the final pass only.
+    fn with_own_wrap(&self, look: &Look) -> Look {
+        let mut look = look.clone();
+        look.drawing.techniques.wrap = self.look.drawing.techniques.wrap;
+        look
     }
 
     fn new(subject: &Subject, watch: &Watch) -> Result<Self, RenderError> {
@@ -50,7 +57,7 @@ impl Kept {
 impl OnCpu {
     /// Draws it.
     pub fn draw(&mut self, subject: &Subject, watch: &Watch) -> Result<Drawn, RenderError> {
-        if subject.look.drawing.technique != TechniqueName::TextureSpace {
+        if subject.look.drawing.technique == TechniqueName::Truth {
             return from_nothing(&CpuRenderer, subject, watch);
         }
         subject.settings.check()?;

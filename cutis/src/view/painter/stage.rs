@@ -1,8 +1,9 @@
 //! How good a picture is: a draft at once, then the whole, then the fine one.
 
+use super::Wish;
 use crate::view::look::Drawing;
 use cutis_render::settings::Quality;
-use cutis_render::{Settings, TechniqueName};
+use cutis_render::{Diffusion, Settings, TechniqueName};
 
 /// A step on the way to the best picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,6 +20,16 @@ pub enum Stage {
 const DRAFT_TEXELS: u32 = 512;
 /// Paths per pixel at which the truth is taken for finished.
 const TRUTH_SAMPLES: u32 = 4096;
+
+/// Pictures whose mean is taken, where each has a pattern of its own: its grain falls to an eighth.
+const ROUNDS: u32 = 64;
+
+/// How many pictures of a side are drawn for the mean of all. A film of many pictures has one of each.
+pub fn rounds(wish: &Wish, side: usize) -> u32 {
+    let Drawing { technique, diffusion, .. } = wish.looks[side].drawing;
+    let has_pattern = technique == TechniqueName::ImageSpace && diffusion != Diffusion::None;
+    if has_pattern && !wish.is_for_a_file { ROUNDS } else { 1 }
+}
 
 impl Stage {
     /// From the first to the best.
@@ -55,6 +66,7 @@ impl Stage {
         };
         Settings {
             technique,
+            techniques: drawing.techniques.clone(),
             diffusion,
             width: size[0],
             height: size[1],

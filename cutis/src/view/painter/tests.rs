@@ -9,8 +9,10 @@ use crate::view::look::{Drawing, Look};
 use crate::view::shown::Shown;
 use crate::view::tests::drive::backends;
 use cutis_gpu::{Adapters, GpuRenderer};
+use cutis_render::TechniqueName;
 use cutis_scene::head::HeadDetail;
 use cutis_scene::studio;
+use glam::DVec4;
 use std::sync::Arc;
 
 fn wish(backend: Backend) -> Wish {
@@ -28,7 +30,7 @@ fn wish(backend: Backend) -> Wish {
 
 fn draft(artist: &mut Artist, devices: &mut Devices, wish: &Wish) -> Painted {
     let desk = Desk { wishes: Arc::default(), news: Arc::default(), context: Default::default() };
-    let painted = artist.paint(devices, wish, 0, Stage::Draft, &desk).expect("is drawn");
+    let painted = artist.paint(devices, wish, 0, (Stage::Draft, 0), &desk).expect("is drawn");
     painted.expect("drafts are drawn to their end")
 }
 
@@ -88,4 +90,34 @@ fn auto_goes_to_the_processor_and_says_why() {
     let after = draft(&mut artist, &mut devices, &wish);
     let told = after.frame.warnings.last().expect("something is told");
     assert!(told.starts_with("drawn on the processor, because there is no graphics adapter"), "{told}");
+}
+
+#[test]
+fn rounds_are_the_exact_mean_of_their_pictures_and_another_look_begins_anew() {
+    for backend in backends("rounds_are_the_exact_mean_of_their_pictures_and_another_look_begins_anew") {
+        let mut wish = wish(backend);
+        wish.size = [24, 20];
+        wish.looks[0].drawing.technique = TechniqueName::ImageSpace;
+        let desk = Desk { wishes: Arc::default(), news: Arc::default(), context: Default::default() };
+        let paint = |artist: &mut Artist, wish: &Wish, round: u32| {
+            let painted = artist.paint(&mut Devices::default(), wish, 0, (Stage::Fine, round), &desk);
+            painted.expect("is drawn").expect("is wanted")
+        };
+        let mut artist = Artist::default();
+        let means: Vec<_> = (0..4).map(|round| paint(&mut artist, &wish, round)).collect();
+        // One who has drawn no other round shows each as it is.
+        let alone: Vec<_> = (0..4).map(|round| paint(&mut Artist::default(), &wish, round)).collect();
+        for (i, pixel) in means[3].frame.pixels.iter().enumerate() {
+            let sum: DVec4 = alone.iter().map(|painted| painted.frame.pixels[i].as_dvec4()).sum();
+            assert_eq!(*pixel, (sum / 4.0).as_vec4(), "{backend}, pixel {i}");
+        }
+        let words: Vec<_> = means.iter().map(|painted| painted.quality.as_str()).collect();
+        assert_eq!(words, ["fine", "fine, 2 of 64 rounds", "fine, 3 of 64 rounds", "fine, 4 of 64 rounds"]);
+        assert!(means.iter().all(|painted| !painted.is_final), "there are more to come");
+        wish.looks[0].skin.roughness = 0.5;
+        let (again, fresh) = (paint(&mut artist, &wish, 0), paint(&mut Artist::default(), &wish, 0));
+        assert_eq!(again.frame.pixels, fresh.frame.pixels, "{backend}: nothing is left of the look before");
+        wish.is_for_a_file = true;
+        assert!(paint(&mut artist, &wish, 0).is_final, "a picture of a turn has one round");
+    }
 }

@@ -1,5 +1,6 @@
 //! Technique, backend, textures and what is seen of them.
 
+use super::choice::choice;
 use crate::backend::Backend;
 use crate::cli::DIFFUSIONS;
 use crate::view::app::Viewer;
@@ -7,7 +8,6 @@ use crate::view::shown::View;
 use cutis_render::TechniqueName;
 use cutis_render::settings::Quality;
 use eframe::egui::{ComboBox, Ui};
-use std::fmt::Display;
 
 /// Sizes of the irradiance texture that can be chosen, texels.
 const SIZES: [u32; 5] = [256, 512, 1024, 2048, 4096];
@@ -42,14 +42,6 @@ pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
     if ui.button("see the whole scene").clicked() {
         viewer.frame_scene();
     }
-}
-
-fn choice<T: Display + PartialEq + Copy>(ui: &mut Ui, label: &str, value: &mut T, all: &[T]) {
-    ComboBox::from_label(label).selected_text(value.to_string()).show_ui(ui, |ui| {
-        for one in all {
-            ui.selectable_value(value, *one, one.to_string());
-        }
-    });
 }
 
 fn name(view: View) -> String {

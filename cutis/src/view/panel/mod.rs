@@ -1,5 +1,6 @@
 //! The panel: everything that can be changed, with unit, range and reset.
 
+mod choice;
 mod light;
 mod method;
 mod number;
@@ -7,9 +8,11 @@ mod picture;
 mod pose;
 mod profile_plot;
 mod skin;
+mod technique;
 mod times;
 
 use super::app::Viewer;
+use super::painter::Painted;
 use eframe::egui::{CollapsingHeader, Label, ScrollArea, Ui};
 
 /// Shows it.
@@ -22,6 +25,7 @@ pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
         section("Picture", true).show(ui, |ui| picture::show(viewer, ui));
         section("Pose", false).show(ui, |ui| pose::show(viewer, ui));
         section("Method", true).show(ui, |ui| method::show(viewer, ui));
+        technique::show(viewer, ui);
         section("Times", false).show(ui, |ui| times::show(viewer, ui));
     });
 }
@@ -53,7 +57,8 @@ pub fn status(viewer: &Viewer, ui: &mut Ui) {
         let drawn = viewer.sides.iter().filter_map(|side| side.painted.as_ref());
         for painted in drawn.take(viewer.split.map_or(1, |_| 2)) {
             let milliseconds = painted.time.as_secs_f64() * 1e3;
-            ui.label(format!("{}, {milliseconds:.0} ms, {}", painted.quality, painted.machine));
+            let Painted { technique, quality, machine, .. } = painted;
+            ui.label(format!("{technique}, {quality}, {milliseconds:.0} ms, {machine}"));
             ui.separator();
         }
         if !viewer.is_settled() {

@@ -35,6 +35,15 @@ impl Number {
             ui.add(slider.max_decimals(3)).on_hover_text(self.hint);
         });
     }
+
+    /// The same for a number that counts; it is exact up to 2^24.
+    pub fn show_whole(self, ui: &mut Ui, value: &mut u32) {
+        let mut shown = *value as f32;
+        self.show(ui, &mut shown);
+        if shown != *value as f32 {
+            *value = shown.round().max(0.0) as u32;
+        }
+    }
 }
 
 /// A factor around 1, as a slider.

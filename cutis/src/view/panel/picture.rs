@@ -4,7 +4,7 @@ use super::number::linear;
 use crate::scene_source::SceneSource;
 use crate::view::app::Viewer;
 use cutis_render::film::{Bloom, ToneMapper};
-use eframe::egui::{ComboBox, Slider, TextEdit, Ui};
+use eframe::egui::{ComboBox, DragValue, Slider, TextEdit, Ui};
 use std::path::PathBuf;
 
 /// Shows it.
@@ -23,6 +23,7 @@ pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
     )
     .show(ui, &mut bloom);
     film.bloom = (bloom > 0.0).then_some(Bloom { strength: bloom, ..film.bloom.unwrap_or_default() });
+    size(&mut viewer.size, ui);
     ComboBox::from_label("tone mapper").selected_text(film.tone_mapper.to_string()).show_ui(ui, |ui| {
         for tone_mapper in ToneMapper::ALL {
             ui.selectable_value(&mut film.tone_mapper, tone_mapper, tone_mapper.to_string());
@@ -44,6 +45,20 @@ pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
     }
     turntable(viewer, ui);
     open(viewer, ui);
+}
+
+/// As large as the window leaves room, or always the same.
+fn size(size: &mut Option<[u32; 2]>, ui: &mut Ui) {
+    let mut is_fixed = size.is_some();
+    let hint = "as large as this, whatever the window leaves room for; both sides alike";
+    ui.horizontal(|ui| {
+        if ui.checkbox(&mut is_fixed, "size [pixels]").on_hover_text(hint).changed() {
+            *size = is_fixed.then_some([500; 2]);
+        }
+        for side in size.iter_mut().flatten() {
+            ui.add(DragValue::new(side).range(1..=4096));
+        }
+    });
 }
 
 /// A turn around the scene, as files.

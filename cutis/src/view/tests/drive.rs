@@ -3,7 +3,9 @@
 use crate::backend::Backend;
 use crate::scene_source::SceneSource;
 use crate::view::app::Viewer;
+use crate::view::keys::TECHNIQUE_KEYS;
 use crate::view::look::Drawing;
+use cutis_render::TechniqueName;
 use cutis_scene::ReadOptions;
 use cutis_scene::head::HeadDetail;
 use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, Vec2};
@@ -25,6 +27,8 @@ pub fn window(size: [f32; 2], backend: Backend) -> Window {
         options: ReadOptions::default(),
         environment: None,
         detail: HeadDetail { triangles: 4000, map_size: 64 },
+        material: None,
+        longest_side_mm: None,
     };
     let scene = source.load().expect("the built-in head is valid");
     let drawing = Drawing { backend, irradiance_size: 128, ..Drawing::default() };
@@ -65,6 +69,12 @@ pub fn settle(window: &mut Window) {
 pub fn press(window: &mut Window, key: Key) {
     window.key_press(key);
     window.step();
+}
+
+/// The key of a technique.
+pub fn key_of(technique: TechniqueName) -> Key {
+    let place = TechniqueName::ALL.iter().position(|one| *one == technique).expect("is listed");
+    TECHNIQUE_KEYS[place]
 }
 
 /// Drags from one place to another.

@@ -2,4 +2,5 @@
 
 pub mod drive;
 mod random;
+mod techniques;
 mod views;

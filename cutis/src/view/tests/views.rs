@@ -1,11 +1,11 @@
 //! Every view, every key, every preset: what is asked for is what is drawn.
 
-use super::drive::{backends, drag, drop_file, message, press, settle, window};
+use super::drive::{backends, drag, drop_file, key_of, message, press, settle, window};
 use crate::backend::Backend;
 use crate::view::look::Look;
 use crate::view::screen::picture;
 use crate::view::shown::View;
-use cutis_render::Aov;
+use cutis_render::{Aov, TechniqueName};
 use cutis_scene::Wave;
 use eframe::egui::{Key, Modifiers, PointerButton, Vec2, pos2, vec2};
 use egui_kittest::kittest::Queryable;
@@ -174,9 +174,9 @@ fn two_looks_are_compared_and_the_truth_refines() {
     press(&mut window, Key::M);
     press(&mut window, Key::S);
     window.state_mut().edited = 1;
-    press(&mut window, Key::Num2);
-    assert_eq!(window.state().looks[1].drawing.technique, cutis_render::TechniqueName::Truth);
-    assert_eq!(window.state().looks[0].drawing.technique, cutis_render::TechniqueName::TextureSpace);
+    press(&mut window, key_of(TechniqueName::Truth));
+    assert_eq!(window.state().looks[1].drawing.technique, TechniqueName::Truth);
+    assert_eq!(window.state().looks[0].drawing.technique, TechniqueName::TextureSpace);
     let refined = |window: &super::drive::Window| {
         window.state().sides[1].painted.as_ref().is_some_and(|p| p.quality.ends_with("of 4096 samples"))
     };

@@ -22,11 +22,13 @@ pub struct Cost {
 
 /// Reads of textures by one invocation of every entry point but those of vertices, counted in its source: one light, as many
 /// Gaussians as skin has at a size, loops as long as for most texels, the default bloom of 1080 rows.
-pub const TAPS: [(&str, u64); 32] = [
+pub const TAPS: [(&str, u64); 34] = [
     ("deform_vertices", 0),
     ("stretch_at_vertices", 0),
     ("unroll", 2),
     ("map_surface", 0),
+    ("map_entry", 5),
+    ("map_next", 1),
     ("look_around", 112),
     ("smooth_openness", 51),
     ("see_lights", 96),

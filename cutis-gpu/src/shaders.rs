@@ -22,6 +22,17 @@ pub const ATLAS: &str = wgsl!(
 /// Pass `shadow map`.
 pub const SHADOW: &str =
     wgsl!("lib/mesh.wgsl", "lib/lights.wgsl", "lib/light_map.wgsl", "passes/shadow.wgsl");
+/// Pass `depth map`.
+pub const DEPTH_MAP: &str = wgsl!(
+    "lib/mesh.wgsl",
+    "lib/packing.wgsl",
+    "lib/lights.wgsl",
+    "lib/light_map.wgsl",
+    "lib/material.wgsl",
+    "lib/relief.wgsl",
+    "lib/rho_dt.wgsl",
+    "passes/depth_map.wgsl"
+);
 /// Pass `openness`.
 pub const OPENNESS: &str = wgsl!(
     "lib/tiles.wgsl",
@@ -142,6 +153,14 @@ pub const SAMPLE_PROFILE: &str = wgsl!(
     "lib/camera.wgsl",
     "passes/sample_profile.wgsl"
 );
+/// Pass `resolve` of `depth-absorption`.
+pub const RESOLVE_DEPTH_ABSORPTION: &str = resolve!(
+    "lib/ambient.wgsl",
+    "lib/light_map.wgsl",
+    "lib/sampling.wgsl",
+    "lib/translucent.wgsl",
+    "passes/inside/depth_absorption.wgsl"
+);
 /// Pass `resolve`: what lies behind everything.
 pub const SKY: &str = wgsl!("lib/mesh.wgsl", "lib/camera.wgsl", "lib/environment.wgsl", "passes/sky.wgsl");
 /// Pass `downsample`.
@@ -162,16 +181,18 @@ pub fn resolve(technique: TechniqueName) -> &'static str {
     match technique {
         TechniqueName::Wrap => RESOLVE_WRAP,
         TechniqueName::ImageSpace => RESOLVE_IMAGE_SPACE,
+        TechniqueName::DepthAbsorption => RESOLVE_DEPTH_ABSORPTION,
         _ => RESOLVE,
     }
 }
 
 /// All of them by name.
-pub const ALL: [(&str, &str); 25] = [
+pub const ALL: [(&str, &str); 27] = [
     ("deform", DEFORM),
     ("stretch", STRETCH),
     ("atlas", ATLAS),
     ("shadow", SHADOW),
+    ("depth map", DEPTH_MAP),
     ("openness", OPENNESS),
     ("visibility", VISIBILITY),
     ("irradiance", IRRADIANCE),
@@ -189,6 +210,7 @@ pub const ALL: [(&str, &str); 25] = [
     ("resolve of image-space", RESOLVE_IMAGE_SPACE),
     ("irradiance image", IRRADIANCE_IMAGE),
     ("sample profile", SAMPLE_PROFILE),
+    ("resolve of depth-absorption", RESOLVE_DEPTH_ABSORPTION),
     ("sky", SKY),
     ("downsample", DOWNSAMPLE),
     ("bloom", BLOOM),

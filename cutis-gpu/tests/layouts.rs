@@ -1,8 +1,10 @@
 //! Every struct that Rust and WGSL share lies the same in both: names, offsets, sizes.
 
+use cutis_gpu::passes::depth_map::Grown;
 use cutis_gpu::passes::diffusion::{Along, Halved, Widening};
 use cutis_gpu::passes::downsample::Pixels;
 use cutis_gpu::passes::gather::{Gaussian, Gaussians};
+use cutis_gpu::passes::inside::depth_absorption::DepthAbsorption;
 use cutis_gpu::passes::inside::wrap::Wrap;
 use cutis_gpu::passes::levels::{LevelSize, MAX_GAUSSIANS, MAX_SIZES};
 use cutis_gpu::passes::openness;
@@ -28,6 +30,7 @@ use cutis_render::passes::transmission::{FADE_DEVIATIONS, VISIBLE};
 use cutis_render::passes::visibility::THINNEST_MM;
 use cutis_render::prepare::rho_dt::{COSINES, ROUGHNESSES};
 use cutis_render::specular_brdf::MIN_ROUGHNESS;
+use cutis_render::technique::depth_absorption;
 use std::mem::{offset_of, size_of};
 
 fn module(source: &str) -> naga::Module {
@@ -128,6 +131,13 @@ fn structs_of_the_scene_match_wgsl() {
 #[test]
 fn structs_of_the_passes_match_wgsl() {
     same_layout!(Drawn, shaders::SHADOW, "Drawn", [light, object, pad0, pad1]);
+    same_layout!(Grown, shaders::DEPTH_MAP, "Grown", [light, growth_mm, pad0, pad1]);
+    same_layout!(
+        DepthAbsorption,
+        shaders::RESOLVE_DEPTH_ABSORPTION,
+        "DepthAbsorption",
+        [sigma_t_per_mm, thickness_scale, colour, filter_radius_mm, samples, layers, by_surface, stops]
+    );
     same_layout!(
         Group,
         shaders::VISIBILITY,
@@ -235,6 +245,10 @@ fn constants_match_wgsl() {
         (shaders::RESOLVE, "CHARTS", f64::from(LayerKind::Charts as u32)),
         (shaders::RESOLVE, "TEXEL", f64::from(LayerKind::Texel as u32)),
         (shaders::RESOLVE, "SAMPLES", f64::from(LayerKind::Samples as u32)),
+        (shaders::RESOLVE, "WAYS", f64::from(LayerKind::Ways as u32)),
+        (shaders::RESOLVE_DEPTH_ABSORPTION, "STREAM", f64::from(depth_absorption::STREAM)),
+        (shaders::RESOLVE_DEPTH_ABSORPTION, "FADE_COS", f64::from(depth_absorption::FADE_COS)),
+        (shaders::RESOLVE_DEPTH_ABSORPTION, "NO_WAY_MM", f64::from(depth_absorption::NO_WAY_MM)),
     ];
     for (source, name, value) in expected {
         assert_eq!(constant(source, name), value, "{name}");

@@ -42,11 +42,18 @@ pub struct Hit {
 impl Bvh {
     /// Builds the hierarchy over all triangles.
     pub fn build(objects: &[Object]) -> Self {
+        let positions_mm: Vec<_> = objects.iter().map(|object| object.mesh.positions_mm.as_slice()).collect();
+        Self::moved(objects, &positions_mm)
+    }
+
+    /// The same over the triangles of objects whose vertices lie elsewhere: one list of places for each object, mm.
+    pub fn moved(objects: &[Object], positions_mm: &[impl AsRef<[Vec3]>]) -> Self {
         let mut triangles = Vec::new();
         let mut sources = Vec::new();
-        for (o, object) in objects.iter().enumerate() {
-            for t in 0..object.mesh.triangles.len() {
-                let [v0, v1, v2] = object.mesh.corners_mm(t).map(Vec3A::from);
+        for (o, (object, places_mm)) in objects.iter().zip(positions_mm).enumerate() {
+            let places_mm = places_mm.as_ref();
+            for (t, corners) in object.mesh.triangles.iter().enumerate() {
+                let [v0, v1, v2] = corners.map(|v| Vec3A::from(places_mm[v as usize]));
                 triangles.push(Triangle { v0, v1, v2 });
                 sources.push([o as u32, t as u32]);
             }

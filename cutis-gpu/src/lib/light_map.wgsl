@@ -52,3 +52,11 @@ fn on_map(map: LightMap, axes_mm: vec3f) -> vec4f {
     }
     return vec4f(axes_mm.xy / map.half_width, depth * map.far_mm, axes_mm.z);
 }
+
+/// Distance of the light from a place, mm; of a light that is endlessly far away, from where its map begins.
+fn light_distance_mm(map: LightMap, place_mm: vec3f) -> f32 {
+    if map.directional {
+        return in_map_axes(map, place_mm).z - map.near_mm;
+    }
+    return length(place_mm - map.origin_mm);
+}

@@ -24,6 +24,7 @@ const EXITANCE: u32 = 8u;
 const CHARTS: u32 = 9u;
 const TEXEL: u32 = 10u;
 const SAMPLES: u32 = 11u;
+const WAYS: u32 = 12u;
 
 @fragment
 fn show(seen: Seen) -> @location(0) vec4f {
@@ -36,6 +37,7 @@ fn show(seen: Seen) -> @location(0) vec4f {
         case LEVEL: { return vec4f(value.rgb, 1.0); }
         case DISTANCES: { return blend_layer(level, 1u, texels, weights); }
         case DISTANCE_OF_ONE: { return vec4f(value.w, 0.0, 0.0, 0.0); }
+        case WAYS: { return distances_at(place); }
         case NORMAL: { return vec4f(place.normal, 1.0); }
         case ALBEDO: { return vec4f(place.albedo, 1.0); }
         case SPECULAR: { return vec4f(parts.specular, 1.0); }

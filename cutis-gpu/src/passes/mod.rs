@@ -4,6 +4,7 @@
 pub mod atlas;
 pub mod bloom;
 pub mod deform;
+pub mod depth_map;
 pub mod diffusion;
 pub mod downsample;
 pub mod gather;
@@ -54,6 +55,8 @@ pub struct Passes {
     pub shadow: shadow::ShadowPass,
     /// Pass `shadows`.
     pub visibility: visibility::VisibilityPass,
+    /// Pass `depth map`.
+    pub depth_map: depth_map::DepthMapPass,
     /// Pass `irradiance`.
     pub irradiance: irradiance::IrradiancePass,
     /// Pass `shares`.
@@ -93,6 +96,7 @@ impl Passes {
             openness: openness::OpennessPass::new(gpu),
             shadow: shadow::ShadowPass::new(gpu),
             visibility: visibility::VisibilityPass::new(gpu),
+            depth_map: depth_map::DepthMapPass::new(gpu),
             irradiance: irradiance::IrradiancePass::new(gpu),
             shares: shares::SharesPass::new(gpu),
             diffusion: diffusion::DiffusionPass::new(gpu, &samplers),

@@ -64,6 +64,8 @@ pub enum LayerKind {
     Texel = 10,
     /// Samples of the pixel, of which each adds as many: the mean counts those that met the surface.
     Samples = 11,
+    /// Distances through bodies that the technique takes itself.
+    Ways = 12,
 }
 
 /// Everything the pass reads.

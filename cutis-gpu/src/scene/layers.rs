@@ -76,6 +76,7 @@ impl GpuScene {
             Aov::Seams => return texel(self.seams_as_a_map(gpu, maps)?),
             Aov::ShadowSamples => return texel(self.shadow_samples(gpu, passes, number)),
             Aov::Samples => LayerKind::Samples,
+            Aov::Thickness if self.shared.depth_maps.is_some() => LayerKind::Ways,
             Aov::Thickness if self.shared.light_count > 1 => LayerKind::Distances,
             Aov::Thickness => LayerKind::DistanceOfOne,
             Aov::Normal => LayerKind::Normal,

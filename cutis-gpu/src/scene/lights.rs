@@ -78,10 +78,11 @@ impl GpuLight {
         tan_half_height: 0.0,
     };
 
-    /// A light over some objects, whose map is layer `layer`. The map is left out if the light stands among them.
-    pub fn new(light: &Light, objects: &[Object], layer: Option<u32>) -> Self {
+    /// A light over some objects, whose map is layer `layer`, with room for what is grown. The map is left out if the light
+    /// stands among them.
+    pub fn new(light: &Light, objects: &[Object], growth_mm: f32, layer: Option<u32>) -> Self {
         let positions = objects.iter().flat_map(|object| object.mesh.positions_mm.iter().copied());
-        Self::over_points(light, positions, layer)
+        Self::over_points(light, grown(positions, growth_mm), layer)
     }
 
     /// A light whose map shows some points.
@@ -99,6 +100,20 @@ impl GpuLight {
         gpu.map_layer = layer;
         gpu
     }
+}
+
+/// Corners of boxes around points, which hold what lies so near to them; the points themselves, if that is nothing.
+pub(super) fn grown(
+    points: impl Iterator<Item = Vec3> + Clone,
+    growth_mm: f32,
+) -> impl Iterator<Item = Vec3> + Clone {
+    let corners = if growth_mm > 0.0 { 8 } else { 1 };
+    points.flat_map(move |p| {
+        (0..corners).map(move |i| {
+            let side = |axis: u32| if i >> axis & 1 == 0 { growth_mm } else { -growth_mm };
+            p + Vec3::new(side(0), side(1), side(2))
+        })
+    })
 }
 
 fn without_map(light: &Light) -> GpuLight {

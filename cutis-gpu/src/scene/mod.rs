@@ -103,9 +103,9 @@ impl GpuScene {
             images: (settings.light_inside() == TechniqueName::ImageSpace)
                 .then(|| Images::new(gpu, &shared, scene, settings))
                 .transpose()?,
+            posing: Posing::new(gpu, scene, shared.growth_mm())?,
             shared,
             objects: Vec::new(),
-            posing: Posing::new(gpu, scene)?,
             development: None,
             background: background(scene),
             surface_steps: Vec::new(),
@@ -165,12 +165,27 @@ impl GpuScene {
                 self.light_steps.push(passes.shadow.step(gpu, drawn, lights, &maps.geometry, shadows, layer));
             }
         }
+        self.add_depth_maps(gpu, passes);
         self.light_steps.extend(after);
         if let Some(images) = &self.images {
             self.light_steps.extend(images.steps(gpu, passes, &self.shared, &self.objects));
         }
         let images = self.images.as_ref();
         self.picture.lay_steps(gpu, passes, &self.shared, &self.objects, images, self.background);
+    }
+
+    /// All layers of each light's map, one after the other: each needs all objects of the one before.
+    fn add_depth_maps(&mut self, gpu: &Gpu, passes: &Passes) {
+        let Some(maps) = &self.shared.depth_maps else { return };
+        for (light, map) in (0..).zip(&self.shared.layers) {
+            let Some(map) = *map else { continue };
+            for layer in 0..maps.layers {
+                for (number, object) in (0..).zip(&self.objects) {
+                    let inputs = object.depth_map_inputs(passes, &self.shared, number);
+                    self.light_steps.push(passes.depth_map.step(gpu, &inputs, maps, (light, map), layer));
+                }
+            }
+        }
     }
 
     /// Draws on a picture of another size or with other samples from now on; only those of the settings count.

@@ -9,6 +9,7 @@ use super::shared::Shared;
 use crate::Gpu;
 use crate::map::{Map, View};
 use crate::passes::atlas::AtlasMaps;
+use crate::passes::depth_map::DepthMapInputs;
 use crate::passes::diffusion::{like_level, shortened};
 use crate::passes::inside::Inside;
 use crate::passes::irradiance::IrradianceInputs;
@@ -214,6 +215,23 @@ impl ObjectMaps {
             inside: self.inside.bound(self, shared, gathered),
             visibility: &self.visibility,
             ambient: &self.ambient,
+            rho_dt: &self.rho_dt,
+        }
+    }
+
+    /// What the depth maps read of this object, which is number `object`.
+    pub fn depth_map_inputs<'a>(
+        &'a self,
+        passes: &'a Passes,
+        shared: &'a Shared,
+        object: u32,
+    ) -> DepthMapInputs<'a> {
+        DepthMapInputs {
+            samplers: &passes.samplers,
+            lights: &shared.lights,
+            object,
+            geometry: &self.geometry,
+            material: &self.material,
             rho_dt: &self.rho_dt,
         }
     }

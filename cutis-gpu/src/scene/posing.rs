@@ -2,7 +2,7 @@
 
 use super::camera::GpuCamera;
 use super::deformable::Deformable;
-use super::lights::GpuLight;
+use super::lights::{GpuLight, grown};
 use super::reach::Reach;
 use super::relight::are_alike;
 use super::shared::{Shared, gpu_lights};
@@ -46,11 +46,11 @@ struct Seen {
 }
 
 impl Posing {
-    /// Uploads the meshes at rest, and the pose they have.
+    /// Uploads the meshes at rest, and the pose they have; the lights' maps have room for what is grown.
     ///
     /// # Errors
     /// If one is larger than the device takes.
-    pub fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, scene: &Scene, growth_mm: f32) -> Result<Self, GpuError> {
         let mut objects = Vec::new();
         for object in &scene.objects {
             let deformable = Deformable::new(gpu, object.rest())?;
@@ -60,7 +60,7 @@ impl Posing {
         let bounds_mm = scene.bounds_mm().unwrap_or_default();
         Ok(Self {
             objects,
-            first: First { pose: scene.pose(), lights: gpu_lights(scene), bounds_mm },
+            first: First { pose: scene.pose(), lights: gpu_lights(scene, growth_mm), bounds_mm },
             seen: Mutex::new(Seen { camera: scene.camera, bounds_mm }),
             pose: Mutex::new(scene.pose()),
         })
@@ -143,9 +143,10 @@ fn laid(scene: &Scene, shared: &Shared, lights: &[GpuLight], corners_mm: &[Vec3]
     if corners_mm.is_empty() {
         return lights.to_vec();
     }
+    let shown = || grown(corners_mm.iter().copied(), shared.growth_mm());
     let over = |((light, &layer), slide_first)| GpuLight {
         slide_first,
-        ..GpuLight::over_points(light, corners_mm.iter().copied(), layer)
+        ..GpuLight::over_points(light, shown(), layer)
     };
     scene.lights.iter().zip(&shared.layers).zip(first_texels(&scene.lights)).map(over).collect()
 }

@@ -15,7 +15,7 @@ impl GpuScene {
     /// another image, one that gets or loses its shadow map, the first or last one with an extent, and an environment that comes, goes or is hidden take a
     /// scene of their own.
     pub fn set_lights(&mut self, gpu: &Gpu, scene: &Scene) -> bool {
-        let lights = gpu_lights(scene);
+        let lights = gpu_lights(scene, self.shared.growth_mm());
         if !self.posing.is_lit_like(&lights)
             || any_extent(&lights) != self.shared.any_extent
             || !self.shared.slides.serve(scene)

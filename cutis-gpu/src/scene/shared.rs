@@ -6,10 +6,12 @@ use super::lights::{GpuLight, NO_MAP};
 use super::relight::{any_extent, layers};
 use super::slides::{Slides, first_texels};
 use super::surroundings::Surroundings;
+use crate::passes::depth_map::DepthMaps;
 use crate::passes::shadow::ShadowMaps;
 use crate::{Gpu, GpuError};
-use cutis_render::Settings;
 use cutis_render::prepare::FilteredEnvironment;
+use cutis_render::technique::depth_absorption::DepthAbsorptionSettings;
+use cutis_render::{Settings, TechniqueName};
 use cutis_scene::Scene;
 use glam::Vec3;
 
@@ -35,6 +37,8 @@ pub struct Shared {
     pub layers: Vec<Option<u32>>,
     /// What the lights see.
     pub shadows: ShadowMaps,
+    /// The same with distances through bodies, where the technique takes them.
+    pub depth_maps: Option<DepthMaps>,
     /// The filtered environment.
     pub environment: EnvironmentMaps,
     /// What hides it; none without an environment.
@@ -48,6 +52,11 @@ pub struct Shared {
 }
 
 impl Shared {
+    /// How far bodies are grown in the lights' maps, mm.
+    pub fn growth_mm(&self) -> f32 {
+        self.depth_maps.as_ref().map_or(0.0, |maps| maps.growth_mm)
+    }
+
     /// Uploads what a scene's objects share.
     ///
     /// # Errors
@@ -58,8 +67,10 @@ impl Shared {
         settings: &Settings,
         filtered: Option<&FilteredEnvironment>,
     ) -> Result<Self, GpuError> {
-        let lights = gpu_lights(scene);
+        let depth = depth_absorption(settings);
+        let lights = gpu_lights(scene, depth.map_or(0.0, |depth| depth.growth_mm));
         let layers = layers(&lights);
+        let maps = layers.iter().flatten().count() as u32;
         let [smallest, largest] = SHADOW_SIZES;
         let size = settings.irradiance_size.clamp(smallest, largest);
         let aspect = settings.width as f32 / settings.height as f32;
@@ -67,7 +78,8 @@ impl Shared {
             slides: Slides::new(gpu, scene)?,
             light_count: lights.len().max(1),
             any_extent: any_extent(&lights),
-            shadows: ShadowMaps::new(gpu, size, layers.iter().flatten().count() as u32),
+            shadows: ShadowMaps::new(gpu, size, maps),
+            depth_maps: depth.map(|depth| DepthMaps::new(gpu, scene, depth, size, maps)),
             environment: EnvironmentMaps::new(gpu, filtered)?,
             surroundings: filtered.map(|_| Surroundings::new(gpu, settings.ambient_samples, &points(scene))),
             camera: gpu.uniform("camera", &GpuCamera::of_scene(scene, aspect)),
@@ -79,16 +91,22 @@ impl Shared {
     }
 }
 
-/// The scene's lights; the first ones have maps, in layers without gaps.
-pub fn gpu_lights(scene: &Scene) -> Vec<GpuLight> {
+/// The scene's lights; the first ones have maps, in layers without gaps, with room for what is grown.
+pub fn gpu_lights(scene: &Scene, growth_mm: f32) -> Vec<GpuLight> {
     let mut next = 0;
     let light = |(light, slide_first)| {
         let layer = (next < SHADOW_BUDGET as u32).then_some(next);
-        let light = GpuLight { slide_first, ..GpuLight::new(light, &scene.objects, layer) };
+        let light = GpuLight { slide_first, ..GpuLight::new(light, &scene.objects, growth_mm, layer) };
         next += u32::from(light.map_layer != NO_MAP);
         light
     };
     scene.lights.iter().zip(first_texels(&scene.lights)).map(light).collect()
+}
+
+/// What the technique that draws wants of depth maps, if it takes them.
+fn depth_absorption(settings: &Settings) -> Option<&DepthAbsorptionSettings> {
+    let is_wanted = settings.light_inside() == TechniqueName::DepthAbsorption;
+    is_wanted.then_some(&settings.techniques.depth_absorption)
 }
 
 /// All vertices, mm.

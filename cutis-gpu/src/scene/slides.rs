@@ -25,7 +25,8 @@ impl Slides {
     /// # Errors
     /// If they do not.
     pub fn check(scene: &Scene) -> Result<(), GpuError> {
-        let texels: u64 = images(scene).map(|image| u64::from(image.width()) * u64::from(image.height())).sum();
+        let texels: u64 =
+            images(scene).map(|image| u64::from(image.width()) * u64::from(image.height())).sum();
         if texels > MAX_TEXELS {
             let size = format!("{texels} texels");
             return Err(GpuError::TooLarge { what: "what all projectors throw", size, limit: MAX_TEXELS });

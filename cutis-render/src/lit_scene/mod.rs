@@ -200,7 +200,9 @@ fn inside<'a>(
     let spread = || Box::new(texture_space::Spread::new(transmission));
     Ok(match lit.settings.light_inside() {
         TechniqueName::Wrap => Box::new(wrap::Wrapped::new(lit)?),
-        TechniqueName::DepthAbsorption => Box::new(depth_absorption::Absorbed::new(lit)?),
+        TechniqueName::DepthAbsorption => {
+            Box::new(clock.time("depth map", || depth_absorption::Absorbed::new(lit))?)
+        }
         TechniqueName::TextureBlur => Box::new(texture_blur::Blurred),
         TechniqueName::ImageSpace => {
             Box::new(clock.time("irradiance image", || image_space::Sampled::new(lit, camera, progress))?)

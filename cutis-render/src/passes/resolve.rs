@@ -185,7 +185,7 @@ impl Resolve<'_> {
             Aov::Irradiance => read(0),
             Aov::Blur(i) => read(usize::from(i) + 1),
             Aov::Stretch => maps.stretch_at(uv).extend(0.0).extend(1.0),
-            Aov::Thickness => self.distances(place),
+            Aov::Thickness => self.inside.distances_mm(place).unwrap_or_else(|| self.distances(place)),
             Aov::Normal => place.normal.extend(1.0),
             Aov::Albedo => place.object.material.albedo.at(uv).extend(1.0),
             Aov::Specular => parts.specular.extend(1.0),

@@ -8,7 +8,7 @@ pub mod truth;
 pub mod wrap;
 
 use crate::passes::resolve::Place;
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 /// Light that leaves at a place after it has been inside the body, before the film of the surface filters it, W/m².
 #[derive(Debug, Clone, Copy, Default)]
@@ -26,6 +26,12 @@ pub trait Inside: Sync {
 
     /// Radiance that the surface reflects from all lights, W/(m² sr), where the technique has a way of its own for that.
     fn shine(&self, place: &Place) -> Option<Vec3> {
+        let _ = place;
+        None
+    }
+
+    /// Distances through bodies towards the first four lights, mm, where the technique does not take them from the light's map.
+    fn distances_mm(&self, place: &Place) -> Option<Vec4> {
         let _ = place;
         None
     }

@@ -1,6 +1,7 @@
 //! What leaves a body at the place that is looked at: the part of the final pass that each technique has of its own. The twins
 //! of `Inside` in cutis-render and of its techniques.
 
+pub mod depth_absorption;
 pub mod wrap;
 
 use crate::Gpu;
@@ -11,6 +12,7 @@ use crate::scene::object::ObjectMaps;
 use crate::scene::shared::Shared;
 use cutis_render::{Settings, TechniqueName};
 use cutis_scene::Object;
+use depth_absorption::DepthAbsorptionMaps;
 use glam::Vec3;
 use wrap::WrapMaps;
 
@@ -23,12 +25,14 @@ pub enum Inside {
     Gathered,
     /// `wrap`.
     Wrap(WrapMaps),
+    /// `depth-absorption`.
+    DepthAbsorption(DepthAbsorptionMaps),
 }
 
 impl Inside {
     /// Whether a technique is drawn here.
     pub fn knows(technique: TechniqueName) -> bool {
-        technique != TechniqueName::Truth && technique != TechniqueName::DepthAbsorption
+        technique != TechniqueName::Truth
     }
 
     /// Uploads what the technique of the settings knows of an object, whose diffuse reflectance is `colour`.
@@ -39,6 +43,9 @@ impl Inside {
         Ok(match settings.light_inside() {
             TechniqueName::Wrap => Self::Wrap(WrapMaps::new(gpu, &object.material, colour, settings)?),
             TechniqueName::ImageSpace => Self::Gathered,
+            TechniqueName::DepthAbsorption => {
+                Self::DepthAbsorption(DepthAbsorptionMaps::new(gpu, object, colour, settings)?)
+            }
             _ => Self::Spread,
         })
     }
@@ -59,6 +66,7 @@ impl Inside {
                 (32, Bound::Texture(maps.transmission.view())),
             ],
             Self::Wrap(wrap) => wrap.bound(shared),
+            Self::DepthAbsorption(maps) => maps.bound(shared),
         }
     }
 }

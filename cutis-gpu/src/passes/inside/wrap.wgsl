@@ -117,3 +117,8 @@ fn wrapped_visible(place: Place, l: u32, towards: LightSample, texels: Around, w
     }
     return select(0.0, 1.0, textureLoad(depths, texel, map.layer, 0).x >= axes_mm.z);
 }
+
+/// Distances are those of the lights' maps.
+fn distances_at(place: Place) -> vec4f {
+    return vec4f(0.0);
+}

@@ -31,6 +31,7 @@ fn same_on_both(test: &str, scene: &Scene, settings: &Settings, allowed: Toleran
         let allowed = match g.name.as_str() {
             "specular" => tolerances::SHINE,
             "diffuse" => tolerances::DIFFUSE,
+            "irradiance" => tolerances::SHARP,
             _ => tolerances::SURFACE,
         };
         difference(&g.pixels, &c.pixels, drawn).check(&format!("{test}, {}", g.name), allowed);

@@ -9,6 +9,7 @@ use cutis_gpu::passes::inside::wrap::Wrap;
 use cutis_gpu::passes::levels::{LevelSize, MAX_GAUSSIANS, MAX_SIZES};
 use cutis_gpu::passes::openness;
 use cutis_gpu::passes::resolve::{LayerKind, Wanted};
+use cutis_gpu::passes::sample_profile::{Gathering, PlaceToLook, Radial};
 use cutis_gpu::passes::seven_taps::SevenTaps;
 use cutis_gpu::passes::shadow::Drawn;
 use cutis_gpu::passes::shares::ShareGroup;
@@ -25,9 +26,12 @@ use cutis_gpu::scene::material::GpuMaterial;
 use cutis_gpu::scene::slides::EXPONENT;
 use cutis_gpu::{passes, shaders};
 use cutis_render::film::{self, ToneMapper, dither};
+use cutis_optics::sample::INTERLEAVED_PIXELS;
+use cutis_render::passes::irradiance_image;
 use cutis_render::passes::tap::NARROW_TEXEL2;
 use cutis_render::passes::transmission::{FADE_DEVIATIONS, VISIBLE};
 use cutis_render::passes::visibility::THINNEST_MM;
+use cutis_render::prepare::radial;
 use cutis_render::prepare::rho_dt::{COSINES, ROUGHNESSES};
 use cutis_render::specular_brdf::MIN_ROUGHNESS;
 use cutis_render::technique::depth_absorption;
@@ -296,4 +300,34 @@ fn constants_of_the_film_match_wgsl() {
 fn the_table_of_taps_is_as_long_as_the_shader_takes_it_to_be() {
     let entries = constant(shaders::TAPS, "VARIANCES");
     assert_eq!(entries, cutis_render::passes::tap::TAPS.narrow.len() as f64);
+}
+
+#[test]
+fn image_space_matches_wgsl() {
+    same_layout!(
+        Gathering,
+        shaders::SAMPLE_PROFILE,
+        "Gathering",
+        [lights, light_count, place_count, jacobian, count_valid]
+    );
+    same_layout!(Radial, shaders::SAMPLE_PROFILE, "Radial", [fine_mm, entries_per_e, pad0, pad1]);
+    same_layout!(
+        PlaceToLook,
+        shaders::SAMPLE_PROFILE,
+        "PlaceToLook",
+        [offset_mm, density_per_mm2, pad0]
+    );
+    same_layout!(Drawn, shaders::IRRADIANCE_IMAGE, "Drawn", [light, object, pad0, pad1]);
+    let expected = [
+        ("ENTRIES", radial::ENTRIES as f64),
+        ("INTERLEAVED_PIXELS", f64::from(INTERLEAVED_PIXELS)),
+        ("GRAZING", f64::from(irradiance_image::GRAZING)),
+        ("MAX_JACOBIAN", f64::from(irradiance_image::MAX_JACOBIAN)),
+        ("SAME_SURFACE_TEXELS", f64::from(irradiance_image::SAME_SURFACE_TEXELS)),
+        ("SAME_SIDE", f64::from(irradiance_image::SAME_SIDE)),
+        ("MIN_SLANT", f64::from(irradiance_image::MIN_SLANT)),
+    ];
+    for (name, value) in expected {
+        assert_eq!(constant(shaders::SAMPLE_PROFILE, name), value, "{name}");
+    }
 }

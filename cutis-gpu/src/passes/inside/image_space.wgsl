@@ -12,3 +12,8 @@ fn exitance_at(place: Place, texels: Around, weights: vec4f) -> Exitance {
 fn shine_at(place: Place, texels: Around, weights: vec4f) -> vec3f {
     return shine_of_lights(place, texels, weights);
 }
+
+/// Distances are those of the lights' maps.
+fn distances_at(place: Place) -> vec4f {
+    return vec4f(0.0);
+}

@@ -1,0 +1,101 @@
+//! Image-space sampling on both backends.
+
+mod common;
+
+use common::tolerances::{self, Tolerance};
+use common::{difference, head_in_the_studio, patch, patch_under_a_spot, renderer, small_frame};
+use cutis_render::settings::TechniqueSettings;
+use cutis_render::technique::image_space::{ImageSpaceProfile, ImageSpaceSettings, SampleCount};
+use cutis_render::{Aov, CpuRenderer, Frame, Renderer, Settings, Silent, TechniqueName};
+use cutis_scene::{Camera, Light, Object, Scattering, Scene};
+use cutis_scene::validation::shapes;
+use glam::Vec3;
+
+fn settings(image_space: ImageSpaceSettings) -> Settings {
+    Settings {
+        technique: TechniqueName::ImageSpace,
+        techniques: TechniqueSettings { image_space, ..TechniqueSettings::default() },
+        // One sample a pixel: both look from the same places.
+        samples_per_pixel: 1,
+        aovs: vec![Aov::Diffuse, Aov::Transmission],
+        ..small_frame()
+    }
+}
+
+fn on_both(test: &str, scene: &Scene, image_space: ImageSpaceSettings) -> Option<[Frame; 2]> {
+    let renderer = renderer(test)?;
+    let settings = settings(image_space);
+    let cpu = CpuRenderer.render(scene, &settings, &Silent).expect("draws");
+    let gpu = renderer.render(scene, &settings, &Silent).expect("draws");
+    Some([cpu, gpu])
+}
+
+/// Compares a layer of both frames where both show a body.
+fn same_layer(test: &str, [cpu, gpu]: &[Frame; 2], layer: usize, allowed: Tolerance) {
+    let covered = |i: usize| cpu.pixels[i].w > 0.99 && gpu.pixels[i].w > 0.99;
+    difference(&gpu.layers[layer].pixels, &cpu.layers[layer].pixels, covered).check(test, allowed);
+}
+
+#[test]
+fn a_patch_under_a_spot() {
+    let test = "image-space: a patch under a spot";
+    let scene = patch_under_a_spot(patch(|u| 40.0 * u, |v| 40.0 * v));
+    if let Some(frames) = on_both(test, &scene, ImageSpaceSettings::default()) {
+        same_layer(test, &frames, 0, tolerances::SAMPLED_PATCH);
+    }
+}
+
+/// Every number other than usual, so that each is missed where it is not handed on.
+#[test]
+fn the_built_in_head_by_other_numbers() {
+    let test = "image-space: the built-in head";
+    let mut scene = head_in_the_studio();
+    scene.objects[0].material.scattering = Scattering::Preset("skin1".to_owned());
+    let other = ImageSpaceSettings {
+        samples: 24,
+        uniform_samples: 16,
+        uniform_radius_mm: Some(9.0),
+        jacobian: false,
+        count: SampleCount::All,
+        light_views: true,
+        profile: ImageSpaceProfile::Gaussians,
+        round: 3,
+    };
+    if let Some(frames) = on_both(test, &scene, other) {
+        same_layer(test, &frames, 0, tolerances::SAMPLED_HEAD);
+    }
+}
+
+/// A thin plate between the camera and the only lamp: all light comes from what the lamp sees.
+#[test]
+fn a_plate_with_the_lamp_behind_it() {
+    let test = "image-space: a plate before a lamp";
+    let mut scene = plate_before_a_lamp();
+    scene.objects[0].material.scattering = Scattering::Preset("whole-milk".to_owned());
+    let Some(frames) = on_both(test, &scene, ImageSpaceSettings::default()) else { return };
+    let middle = 80 * 160 + 80;
+    assert!(frames[0].layers[1].pixels[middle].x > 1e-5, "{}", frames[0].layers[1].pixels[middle]);
+    same_layer(test, &frames, 1, tolerances::SAMPLED_PLATE);
+    let dark = ImageSpaceSettings { light_views: false, ..ImageSpaceSettings::default() };
+    let frames = on_both(test, &scene, dark).expect("there was an adapter");
+    for frame in &frames {
+        assert_eq!(frame.layers[1].pixels[middle].truncate(), Vec3::ZERO, "nothing is seen of the lit side");
+    }
+}
+
+fn plate_before_a_lamp() -> Scene {
+    let object = Object::new("plate", shapes::cuboid(Vec3::ZERO, Vec3::new(30.0, 30.0, 0.5)), cutis_scene::Material::default());
+    let [lo, hi] = object.mesh.bounds_mm().expect("has points");
+    Scene {
+        camera: Camera::framing([lo, hi], Vec3::Z, 0.4),
+        lights: vec![Light::Directional {
+            dir_to_light: Vec3::new(0.3, 0.2, -1.0).normalize(),
+            irradiance_w_per_m2: Vec3::splat(3.0),
+            angular_radius_rad: 0.0,
+        }],
+        objects: vec![object],
+        environment: None,
+        background: None,
+        warnings: Vec::new(),
+    }
+}

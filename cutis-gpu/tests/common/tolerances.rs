@@ -66,7 +66,7 @@ pub const THREE_LIGHTS: Tolerance = tolerance(0.0552, 0.0247);
 /// The head by wrap lighting: its shadows are as sharp as the maps that tell them.
 pub const WRAPPED_HEAD: Tolerance = tolerance(0.05, 0.02);
 /// The head before a lamp, drawn by distances through it: the picture, and what comes through.
-pub const BACKLIT_HEAD: [Tolerance; 2] = [tolerance(0.055, 0.055), tolerance(0.09, 0.06)];
+pub const BACKLIT_HEAD: [Tolerance; 2] = [tolerance(0.055, 0.055), tolerance(0.05, 0.07)];
 /// Two fingers with all numbers of that technique other than usual.
 pub const PEELED_FINGERS: [Tolerance; 2] = [tolerance(0.022, 0.004), tolerance(0.022, 0.004)];
 /// A finger in a pose against one that was uploaded so.

@@ -7,8 +7,8 @@ use common::{difference, head_in_the_studio, patch, patch_under_a_spot, renderer
 use cutis_render::settings::TechniqueSettings;
 use cutis_render::technique::image_space::{ImageSpaceProfile, ImageSpaceSettings, SampleCount};
 use cutis_render::{Aov, CpuRenderer, Frame, Renderer, Settings, Silent, TechniqueName};
-use cutis_scene::{Camera, Light, Object, Scattering, Scene};
 use cutis_scene::validation::shapes;
+use cutis_scene::{Camera, Light, Object, Scattering, Scene};
 use glam::Vec3;
 
 fn settings(image_space: ImageSpaceSettings) -> Settings {
@@ -52,8 +52,9 @@ fn the_built_in_head_by_other_numbers() {
     let mut scene = head_in_the_studio();
     scene.objects[0].material.scattering = Scattering::Preset("skin1".to_owned());
     let other = ImageSpaceSettings {
-        samples: 24,
-        uniform_samples: 16,
+        // Enough that the grain of different places within a pixel does not hide what is wrong.
+        samples: 96,
+        uniform_samples: 48,
         uniform_radius_mm: Some(9.0),
         jacobian: false,
         count: SampleCount::All,
@@ -84,7 +85,11 @@ fn a_plate_with_the_lamp_behind_it() {
 }
 
 fn plate_before_a_lamp() -> Scene {
-    let object = Object::new("plate", shapes::cuboid(Vec3::ZERO, Vec3::new(30.0, 30.0, 0.5)), cutis_scene::Material::default());
+    let object = Object::new(
+        "plate",
+        shapes::cuboid(Vec3::ZERO, Vec3::new(30.0, 30.0, 0.5)),
+        cutis_scene::Material::default(),
+    );
     let [lo, hi] = object.mesh.bounds_mm().expect("has points");
     Scene {
         camera: Camera::framing([lo, hi], Vec3::Z, 0.4),
@@ -98,4 +103,30 @@ fn plate_before_a_lamp() -> Scene {
         background: None,
         warnings: Vec::new(),
     }
+}
+
+/// A scene that takes another round draws what one made for that round draws.
+#[test]
+fn another_round_takes_other_places() {
+    let test = "image-space: rounds";
+    let Some(renderer) = renderer(test) else { return };
+    let scene = patch_under_a_spot(patch(|u| 40.0 * u, |v| 40.0 * v));
+    let in_round = |round| settings(ImageSpaceSettings { round, ..ImageSpaceSettings::default() });
+    let (gpu, passes) = common::parts(renderer);
+    let drawn = |ready: &cutis_gpu::GpuScene| {
+        ready.draw(gpu).expect("draws");
+        ready.picture(gpu).expect("is read")
+    };
+    let mut ready = renderer.scene(&scene, &in_round(0), &Silent).expect("is uploaded");
+    let first = drawn(&ready);
+    ready.set_sampling(gpu, &scene, &in_round(5)).expect("is sampled");
+    let fresh = renderer.scene(&scene, &in_round(5), &Silent).expect("is uploaded");
+    assert_eq!(drawn(&ready), drawn(&fresh));
+    assert_ne!(drawn(&ready), first);
+    // More samples of a pixel share its places.
+    let finer = Settings { samples_per_pixel: 4, ..in_round(5) };
+    ready.set_picture(gpu, passes, &finer).expect("is small");
+    ready.set_sampling(gpu, &scene, &finer).expect("is sampled");
+    let fresh = renderer.scene(&scene, &finer, &Silent).expect("is uploaded");
+    assert_eq!(drawn(&ready), drawn(&fresh));
 }

@@ -25,8 +25,8 @@ use cutis_gpu::scene::lights::{GpuLight, NO_MAP};
 use cutis_gpu::scene::material::GpuMaterial;
 use cutis_gpu::scene::slides::EXPONENT;
 use cutis_gpu::{passes, shaders};
-use cutis_render::film::{self, ToneMapper, dither};
 use cutis_optics::sample::INTERLEAVED_PIXELS;
+use cutis_render::film::{self, ToneMapper, dither};
 use cutis_render::passes::irradiance_image;
 use cutis_render::passes::tap::NARROW_TEXEL2;
 use cutis_render::passes::transmission::{FADE_DEVIATIONS, VISIBLE};
@@ -311,12 +311,7 @@ fn image_space_matches_wgsl() {
         [lights, light_count, place_count, jacobian, count_valid]
     );
     same_layout!(Radial, shaders::SAMPLE_PROFILE, "Radial", [fine_mm, entries_per_e, pad0, pad1]);
-    same_layout!(
-        PlaceToLook,
-        shaders::SAMPLE_PROFILE,
-        "PlaceToLook",
-        [offset_mm, density_per_mm2, pad0]
-    );
+    same_layout!(PlaceToLook, shaders::SAMPLE_PROFILE, "PlaceToLook", [offset_mm, density_per_mm2, pad0]);
     same_layout!(Drawn, shaders::IRRADIANCE_IMAGE, "Drawn", [light, object, pad0, pad1]);
     let expected = [
         ("ENTRIES", radial::ENTRIES as f64),

@@ -140,14 +140,16 @@ fn a_shadow_edge_has_the_profile_of_a_half_plane() {
         for x in [16, 28, 40, 46, 47, 48, 49, 56, 72] {
             let left_mm = (f64::from(x) - 48.0) * pixel_mm;
             // The mean over the pixel, in which places are random.
-            let over: f64 = (0..8).map(|k| half_plane(&dipole, left_mm + (f64::from(k) + 0.5) / 8.0 * pixel_mm)).sum();
+            let over: f64 =
+                (0..8).map(|k| half_plane(&dipole, left_mm + (f64::from(k) + 0.5) / 8.0 * pixel_mm)).sum();
             let expected = (over / 8.0) as f32;
-            let column: Vec<f32> =
-                (0..96).map(|y| frame.layers[0].pixels[y * 96 + x as usize].x).collect();
+            let column: Vec<f32> = (0..96).map(|y| frame.layers[0].pixels[y * 96 + x as usize].x).collect();
             let mean = column.iter().sum::<f32>() / 96.0;
             let spread = (column.iter().map(|v| (v - mean).powi(2)).sum::<f32>() / 96.0).sqrt();
             let error = spread / 96f32.sqrt();
-            eprintln!("{samples} + {uniform_samples} at {left_mm:.2} mm: {mean:.5} ± {error:.5}, expected {expected:.5}");
+            eprintln!(
+                "{samples} + {uniform_samples} at {left_mm:.2} mm: {mean:.5} ± {error:.5}, expected {expected:.5}"
+            );
             // Three standard errors; beside them the image, whose texels light the places of a whole pixel alike: half a pixel
             // of 0.31 mm off at most, a third of the slope at the edge on the mean of both sides.
             assert!((mean - expected).abs() < 3.0 * error + 5e-3, "at {left_mm} mm");

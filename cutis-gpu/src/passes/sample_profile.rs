@@ -63,6 +63,7 @@ pub struct Profiles {
     tables: wgpu::Buffer,
     places: wgpu::Buffer,
     radials: wgpu::Buffer,
+    lights: Vec<u32>,
 }
 
 impl Profiles {
@@ -71,46 +72,51 @@ impl Profiles {
     /// # Errors
     /// If a material has no profile that can be sampled.
     pub fn new(gpu: &Gpu, scene: &Scene, settings: &Settings, lights: &[u32]) -> Result<Self, RenderError> {
-        let kernels = kernels(scene, settings)?;
-        let image_space = &settings.techniques.image_space;
-        let mut numbers = Gathering {
-            light_count: lights.len() as u32,
-            place_count: kernels.first().map_or(0, |kernel| kernel.counts.iter().sum()),
-            jacobian: u32::from(image_space.jacobian),
-            count_valid: u32::from(image_space.count == SampleCount::Valid),
-            ..Gathering::zeroed()
-        };
-        numbers.lights[..lights.len()].copy_from_slice(lights);
+        // Room for a picture of one sample a pixel, which takes most places.
+        let kernels = kernels(scene, settings, 1)?;
         let tables: Vec<[f32; 4]> =
-            kernels.iter().flat_map(|k| k.table.iter().map(|v| v.to_array())).collect();
+            kernels.iter().flat_map(|kernel| kernel.table.iter().map(|entry| entry.to_array())).collect();
         let radial = |kernel: &RadialKernel| Radial {
             fine_mm: kernel.fine_mm,
             entries_per_e: kernel.entries_per_e,
             ..Radial::zeroed()
         };
         let radials: Vec<Radial> = kernels.iter().map(radial).collect();
-        Ok(Self {
-            numbers: gpu.uniform("gathering", &numbers),
+        let this = Self {
+            numbers: gpu.uniform("gathering", &Gathering::zeroed()),
             tables: gpu.storage("tables of profiles", &tables),
             places: gpu.storage("places to look at", &places(&kernels)),
             radials: gpu.storage("profiles", &radials),
-        })
+            lights: lights.to_vec(),
+        };
+        this.set_sampling(gpu, scene, settings)?;
+        Ok(this)
     }
 
-    /// Takes the places of another round.
+    /// Takes the places of a round, for as many samples of a pixel as the settings want.
     ///
     /// # Errors
     /// If a material has no profile that can be sampled.
-    pub fn set_round(&self, gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<(), RenderError> {
-        let places = places(&kernels(scene, settings)?);
-        gpu.queue.write_buffer(&self.places, 0, bytemuck::cast_slice(&places));
+    pub fn set_sampling(&self, gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<(), RenderError> {
+        let grid = settings.samples_grid();
+        let kernels = kernels(scene, settings, grid * grid)?;
+        let image_space = &settings.techniques.image_space;
+        let mut numbers = Gathering {
+            light_count: self.lights.len() as u32,
+            place_count: kernels.first().map_or(0, |kernel| kernel.counts.iter().sum()),
+            jacobian: u32::from(image_space.jacobian),
+            count_valid: u32::from(image_space.count == SampleCount::Valid),
+            ..Gathering::zeroed()
+        };
+        numbers.lights[..self.lights.len()].copy_from_slice(&self.lights);
+        gpu.queue.write_buffer(&self.numbers, 0, bytemuck::bytes_of(&numbers));
+        gpu.queue.write_buffer(&self.places, 0, bytemuck::cast_slice(&places(&kernels)));
         Ok(())
     }
 }
 
-fn kernels(scene: &Scene, settings: &Settings) -> Result<Vec<RadialKernel>, RenderError> {
-    let grid = settings.samples_grid();
-    scene.objects.iter().map(|object| RadialKernel::new(&object.material, settings, grid * grid)).collect()
+fn kernels(scene: &Scene, settings: &Settings, times: u32) -> Result<Vec<RadialKernel>, RenderError> {
+    scene.objects.iter().map(|object| RadialKernel::new(&object.material, settings, times)).collect()
 }
 
 fn places(kernels: &[RadialKernel]) -> Vec<PlaceToLook> {

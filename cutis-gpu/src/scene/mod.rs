@@ -203,6 +203,15 @@ impl GpuScene {
         gpu.check()
     }
 
+    /// Takes the pattern of another round, and as many samples of a pixel as the settings want, for the technique that samples
+    /// the profile; `scene` is the one this was made from.
+    ///
+    /// # Errors
+    /// If a material has no profile that can be sampled.
+    pub fn set_sampling(&self, gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<(), RenderError> {
+        self.images.as_ref().map_or(Ok(()), |images| images.profiles.set_sampling(gpu, scene, settings))
+    }
+
     /// Moves the camera.
     pub fn set_camera(&self, gpu: &Gpu, camera: &Camera) {
         let aspect = self.picture.aspect();

@@ -231,7 +231,7 @@ mod tests {
             warnings: Vec::new(),
         };
         let bvh = Bvh::build(&scene.objects);
-        for growth_mm in [0.2, 2.0, 30.0] {
+        for growth_mm in [0.001, 0.2, 2.0, 30.0] {
             let settings = DepthAbsorptionSettings { growth_mm, ..DepthAbsorptionSettings::default() };
             let ways = Ways::new(&scene, &bvh, &settings);
             let mut seen = 0;
@@ -248,7 +248,7 @@ mod tests {
                 };
                 for towards in [directional, LightSample { distance_mm: 200.0, ..directional }] {
                     // Facets turn away a little before the smooth surface does.
-                    if point.normal.dot(dir) > -0.05 {
+                    if point.normal.dot(dir) > -0.035 {
                         continue;
                     }
                     ways.surfaces(&towards, point.position_mm, |_, entry| {

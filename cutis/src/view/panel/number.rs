@@ -21,6 +21,10 @@ pub struct Number {
 impl Number {
     /// Slider and button for the way back.
     pub fn show(self, ui: &mut Ui, value: &mut f32) {
+        self.with_decimals(3, ui, value);
+    }
+
+    fn with_decimals(self, most: usize, ui: &mut Ui, value: &mut f32) {
         ui.horizontal(|ui| {
             let is_changed = *value != self.original;
             let back = ui.add_enabled(is_changed, eframe::egui::Button::new("reset").small());
@@ -32,14 +36,14 @@ impl Number {
                 .clamping(SliderClamping::Edits)
                 .logarithmic(self.is_logarithmic)
                 .text(self.name);
-            ui.add(slider.max_decimals(3)).on_hover_text(self.hint);
+            ui.add(slider.max_decimals(most)).on_hover_text(self.hint);
         });
     }
 
     /// The same for a number that counts; it is exact up to 2^24.
     pub fn show_whole(self, ui: &mut Ui, value: &mut u32) {
         let mut shown = *value as f32;
-        self.show(ui, &mut shown);
+        self.with_decimals(0, ui, &mut shown);
         if shown != *value as f32 {
             *value = shown.round().max(0.0) as u32;
         }

@@ -89,16 +89,16 @@ fn sample_profile(@builtin(position) position: vec4f) -> Gathered {
     let first = ((own.object - 1u) * INTERLEAVED_PIXELS + pixel) * gathering.place_count;
     var transmitted = vec3f(0.0);
     for (var image = 0u; image < gathering.light_count; image++) {
-        transmitted += from_image(image, own, first);
+        transmitted += found_in_image(image, own, first);
     }
-    return Gathered(vec4f(from_image(CAMERA, own, first), 1.0), vec4f(transmitted, 1.0));
+    return Gathered(vec4f(found_in_image(CAMERA, own, first), 1.0), vec4f(transmitted, 1.0));
 }
 
 /// In place of the number of a light's image: the camera's.
 const CAMERA: u32 = 0xffffffffu;
 
 /// Light that is found in one image around the point, W/m², of all that the images before do not show.
-fn from_image(image: u32, own: Texel, first: u32) -> vec3f {
+fn found_in_image(image: u32, own: Texel, first: u32) -> vec3f {
     let view = view_of(image);
     let axes = orthonormal_pair(own.normal);
     var sum = vec3f(0.0);

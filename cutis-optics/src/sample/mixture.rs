@@ -4,7 +4,7 @@
 //! densities by their shares, whichever part was picked: an estimator that divides by it follows the balance heuristic
 //! (Veach & Guibas 1995, doi:10.1145/218380.218498, not opened) over the parts.
 
-use super::{RadialSampler, XI_MAX};
+use super::{RadialSampler, in_unit};
 
 /// Draws from one of several samplers.
 pub struct MixtureSampler {
@@ -51,8 +51,7 @@ impl MixtureSampler {
 
 impl RadialSampler for MixtureSampler {
     fn radius_mm(&self, xi: f32) -> f32 {
-        // NaN counts as 0, as in all samplers.
-        let xi = xi.max(0.0).min(XI_MAX);
+        let xi = in_unit(xi);
         let last = self.parts.len() - 1;
         let part = self.parts.partition_point(|(end, _)| *end <= xi).min(last);
         let from = if part == 0 { 0.0 } else { self.parts[part - 1].0 };
@@ -78,7 +77,7 @@ impl RadialSampler for MixtureSampler {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use super::*;
-    use crate::sample::{DipoleSampler, GaussianSampler};
+    use crate::sample::{DipoleSampler, GaussianSampler, XI_MAX};
     use crate::{Dipole, Gaussian, GaussianSum, Medium};
     use core::f64::consts::TAU;
 

@@ -88,6 +88,12 @@ fn unit(xi: f32x8) -> f32x8 {
     xi.max(f32x8::ZERO).fast_min(f32x8::splat(XI_MAX))
 }
 
+/// The same for a single number.
+fn in_unit(xi: f32) -> f32 {
+    // Unlike a clamp, a maximum of NaN and 0 is 0.
+    XI_MAX.min(xi.max(0.0))
+}
+
 /// Odds of the part of [0, 1) before `xi` against the part behind it, within the interval that holds it: 0 at `from`,
 /// without end towards `to`. Of both differences no digit is lost, and ln(1 + odds) = -ln(1 - share).
 #[inline(always)]

@@ -1,6 +1,6 @@
 //! Radii spread evenly over a disc: beside those of a profile, they find light that the profile looks for too rarely.
 
-use super::{RadialSampler, XI_MAX, in_lanes, unit};
+use super::{RadialSampler, in_lanes, in_unit, unit};
 use core::f32::consts::PI;
 use wide::f32x8;
 
@@ -19,7 +19,7 @@ impl UniformDisc {
 
 impl RadialSampler for UniformDisc {
     fn radius_mm(&self, xi: f32) -> f32 {
-        self.radius_mm * xi.max(0.0).min(XI_MAX).sqrt()
+        self.radius_mm * in_unit(xi).sqrt()
     }
 
     fn pdf_per_mm2(&self, radius_mm: f32) -> f32 {

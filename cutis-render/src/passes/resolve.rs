@@ -159,7 +159,7 @@ impl Resolve<'_> {
 
     fn specular(&self, place: &Place, shine: &Shine) -> Vec3 {
         let Place { maps, point, chart, .. } = place;
-        let mut sum = self.inside.shine(place).unwrap_or_else(|| self.from_lights(place, shine));
+        let mut sum = self.inside.shine(place).unwrap_or_else(|| self.shine_of_lights(place, shine));
         if let Some(environment) = self.lit.environment {
             let open = maps.ambient.at(point.uv, *chart, point.normal, shine.normal);
             sum += shine.from_environment(environment, &maps.rho_dt, open);
@@ -167,7 +167,7 @@ impl Resolve<'_> {
         sum
     }
 
-    fn from_lights(&self, place: &Place, shine: &Shine) -> Vec3 {
+    fn shine_of_lights(&self, place: &Place, shine: &Shine) -> Vec3 {
         let lights = self.lit.scene.lights.iter().enumerate();
         let facing = lights.filter(|(_, light)| faces(&place.point, light));
         facing

@@ -183,7 +183,7 @@ struct Gathering<'a> {
 
 impl Gathering<'_> {
     /// Light that is found in one image around the point, W/m², of all that the images before do not show.
-    fn from_image(&self, number: usize, places: &[PlaceToLook]) -> Vec3 {
+    fn found_in_image(&self, number: usize, places: &[PlaceToLook]) -> Vec3 {
         let (tangent, bitangent) = self.normal.any_orthonormal_pair();
         let (image, before) = (&self.images[number], &self.images[..number]);
         let (mut sum, mut valid) = (Vec3::ZERO, 0);
@@ -222,7 +222,7 @@ impl Inside for Sampled<'_> {
             normal: place.point.flat_normal,
         };
         let places = kernel.places_of(place.sample);
-        let of_lights = (1..self.images.len()).map(|number| gathering.from_image(number, places));
-        Exitance { local: gathering.from_image(0, places), transmitted: of_lights.sum() }
+        let of_lights = (1..self.images.len()).map(|number| gathering.found_in_image(number, places));
+        Exitance { local: gathering.found_in_image(0, places), transmitted: of_lights.sum() }
     }
 }

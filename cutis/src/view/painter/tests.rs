@@ -99,14 +99,20 @@ fn rounds_are_the_exact_mean_of_their_pictures_and_another_look_begins_anew() {
         wish.size = [24, 20];
         wish.looks[0].drawing.technique = TechniqueName::ImageSpace;
         let desk = Desk { wishes: Arc::default(), news: Arc::default(), context: Default::default() };
-        let paint = |artist: &mut Artist, wish: &Wish, round: u32| {
-            let painted = artist.paint(&mut Devices::default(), wish, 0, (Stage::Fine, round), &desk);
+        // One device for all: on another one the scene would be uploaded anew, with the round in it.
+        let mut devices = Devices::default();
+        let mut paint = |artist: &mut Artist, wish: &Wish, round: u32| {
+            let painted = artist.paint(&mut devices, wish, 0, (Stage::Fine, round), &desk);
             painted.expect("is drawn").expect("is wanted")
         };
         let mut artist = Artist::default();
         let means: Vec<_> = (0..4).map(|round| paint(&mut artist, &wish, round)).collect();
         // One who has drawn no other round shows each as it is.
         let alone: Vec<_> = (0..4).map(|round| paint(&mut Artist::default(), &wish, round)).collect();
+        assert!(
+            alone[0].frame.pixels != alone[3].frame.pixels,
+            "{backend}: rounds have patterns of their own"
+        );
         for (i, pixel) in means[3].frame.pixels.iter().enumerate() {
             let sum: DVec4 = alone.iter().map(|painted| painted.frame.pixels[i].as_dvec4()).sum();
             assert_eq!(*pixel, (sum / 4.0).as_vec4(), "{backend}, pixel {i}");

@@ -317,6 +317,7 @@ fn image_space_matches_wgsl() {
         ("ENTRIES", radial::ENTRIES as f64),
         ("INTERLEAVED_PIXELS", f64::from(INTERLEAVED_PIXELS)),
         ("GRAZING", f64::from(irradiance_image::GRAZING)),
+        ("ROUNDING", f64::from(irradiance_image::ROUNDING)),
         ("MAX_JACOBIAN", f64::from(irradiance_image::MAX_JACOBIAN)),
         ("SAME_SURFACE_TEXELS", f64::from(irradiance_image::SAME_SURFACE_TEXELS)),
         ("SAME_SIDE", f64::from(irradiance_image::SAME_SIDE)),

@@ -17,6 +17,7 @@
 const ENTRIES: u32 = 1024u;
 const INTERLEAVED_PIXELS: u32 = 16u;
 const GRAZING: f32 = 0.02;
+const ROUNDING: f32 = 1e-6;
 const MAX_JACOBIAN: f32 = 8.0;
 const SAME_SURFACE_TEXELS: f32 = 2.0;
 const SAME_SIDE: f32 = 0.3;
@@ -61,6 +62,8 @@ struct View {
 struct SeenThere {
     found: bool,
     position_mm: vec3f,
+    /// From the point that was asked for to that place, mm.
+    from_point_mm: vec3f,
     normal: vec3f,
     irradiance_w_per_m2: vec3f,
     uncertain_mm: f32,
@@ -105,13 +108,14 @@ fn found_in_image(image: u32, own: Texel, first: u32) -> vec3f {
     var valid = 0u;
     for (var i = 0u; i < gathering.place_count; i++) {
         let place = looked_at[first + i];
-        let plane_mm = own.position_mm + axes[0] * place.offset_mm.x + axes[1] * place.offset_mm.y;
+        let offset_mm = axes[0] * place.offset_mm.x + axes[1] * place.offset_mm.y;
+        let plane_mm = own.position_mm + offset_mm;
         let seen = through(image, view, plane_mm, own.object);
         if !seen.found {
             continue;
         }
         valid++;
-        let r = profile_at(own.object, distance(seen.position_mm, own.position_mm));
+        let r = profile_at(own.object, length(offset_mm + seen.from_point_mm));
         if all(r == vec3f(0.0)) || shown_before(image, seen, own.object) {
             continue;
         }
@@ -121,8 +125,8 @@ fn found_in_image(image: u32, own: Texel, first: u32) -> vec3f {
         }
         sum += r * seen.irradiance_w_per_m2 * (area / place.density_per_mm2);
     }
-    // Lights look for what the camera misses: what they miss as well is dark.
-    if gathering.count_valid != 0u && image == CAMERA && valid > 0u {
+    // Where lights look for what the camera misses, it must not be made up for: what they miss as well is dark.
+    if gathering.count_valid != 0u && gathering.light_count == 0u && valid > 0u {
         return sum * (f32(gathering.place_count) / f32(valid));
     }
     return sum;
@@ -225,9 +229,12 @@ fn through(image: u32, view: View, point_mm: vec3f, object: u32) -> SeenThere {
     if abs(cos) >= GRAZING {
         further_mm = dot(texel.normal, texel.position_mm - point_mm) / cos;
     }
+    let rounding_mm = ROUNDING * abs(distance_in_view_mm(view, point_mm));
+    let from_point_mm = select(dir * further_mm, vec3f(0.0), abs(further_mm) < rounding_mm);
     return SeenThere(
         texel.object != 0u,
-        point_mm + dir * further_mm,
+        point_mm + from_point_mm,
+        from_point_mm,
         texel.normal,
         texel.irradiance_w_per_m2,
         uncertain_mm(image, view, texel),

@@ -118,8 +118,8 @@ pub const SEVEN_TAPS: Tolerance = tolerance(0.0175, 0.02);
 /// A patch by samples of the profile: the processor draws a random place of each pixel, the adapter its middle.
 /// Measured 0.0108 and 0.
 pub const SAMPLED_PATCH: Tolerance = tolerance(0.015, 0.002);
-/// The head by samples: the same, and shadows that maps tell.
-pub const SAMPLED_HEAD: Tolerance = tolerance(0.05, 0.05);
+/// The head by samples: the same, and shadows that maps tell. Measured 0.0206 and 0.0511.
+pub const SAMPLED_HEAD: Tolerance = tolerance(0.028, 0.068);
 /// Light through a plate, all of it from what the lamp sees.
 /// Measured 0.0074 and 0.0117.
 pub const SAMPLED_PLATE: Tolerance = tolerance(0.011, 0.017);

@@ -15,6 +15,8 @@ const NOTHING: u32 = u32::MAX;
 pub const GRAZING: f32 = 0.02;
 /// Most area on the body that an area on the tangent plane may stand for: at the edges of things it has no bound.
 pub const MAX_JACOBIAN: f32 = 8.0;
+/// Part of a distance that is lost by rounding: a few digits of an f32.
+pub const ROUNDING: f32 = 1e-6;
 /// Widths of texels within which two depths are one surface.
 pub const SAME_SURFACE_TEXELS: f32 = 2.0;
 /// Cosine between normals above which two places are on one side of a thin part.
@@ -127,6 +129,8 @@ pub struct IrradianceImage {
 pub struct Seen {
     /// Place on the body, mm.
     pub position_mm: Vec3,
+    /// From the point that was asked for to that place, mm: nothing where both are one but for rounding.
+    pub from_point_mm: Vec3,
     /// Unit normal of the triangle there: places lie on it, and not on the smooth surface.
     pub normal: Vec3,
     /// Irradiance under the surface, W/m².
@@ -175,8 +179,11 @@ impl IrradianceImage {
         } else {
             texel.normal.dot(texel.position_mm - point_mm) / cos
         };
+        let rounding_mm = ROUNDING * self.view.distance_mm(point_mm).abs();
+        let from_point_mm = if further_mm.abs() < rounding_mm { Vec3::ZERO } else { dir * further_mm };
         Some(Seen {
-            position_mm: point_mm + dir * further_mm,
+            position_mm: point_mm + from_point_mm,
+            from_point_mm,
             normal: texel.normal,
             irradiance_w_per_m2: texel.irradiance_w_per_m2,
             uncertain_mm: self.uncertain_mm(texel),

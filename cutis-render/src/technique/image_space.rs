@@ -49,7 +49,8 @@ pub struct ImageSpaceSettings {
 /// What the sum of the samples is divided by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SampleCount {
-    /// Those that met the body, as in the paper: what the image does not show counts like what it shows.
+    /// Those that met the body, as in the paper: what the image does not show counts like what it shows. Where lights have
+    /// images of their own, these show it, and all samples count.
     Valid,
     /// All of them: what the image does not show is dark.
     All,
@@ -188,10 +189,11 @@ impl Gathering<'_> {
         let (image, before) = (&self.images[number], &self.images[..number]);
         let (mut sum, mut valid) = (Vec3::ZERO, 0);
         for place in places {
-            let plane_mm = self.middle_mm + tangent * place.offset_mm.x + bitangent * place.offset_mm.y;
+            let offset_mm = tangent * place.offset_mm.x + bitangent * place.offset_mm.y;
+            let plane_mm = self.middle_mm + offset_mm;
             let Some(seen) = image.through(plane_mm, self.object) else { continue };
             valid += 1;
-            let r = self.kernel.at_mm(seen.position_mm.distance(self.middle_mm)).truncate();
+            let r = self.kernel.at_mm((offset_mm + seen.from_point_mm).length()).truncate();
             if r == Vec3::ZERO || before.iter().any(|image| image.shows(&seen, self.object)) {
                 continue;
             }
@@ -202,8 +204,8 @@ impl Gathering<'_> {
             };
             sum += r * seen.irradiance_w_per_m2 * (jacobian / place.density_per_mm2);
         }
-        // Lights look for what the camera misses: what they miss as well is dark.
-        let counts = self.settings.count == SampleCount::Valid && number == 0 && valid > 0;
+        // Where lights look for what the camera misses, it must not be made up for: what they miss as well is dark.
+        let counts = self.settings.count == SampleCount::Valid && self.images.len() == 1 && valid > 0;
         if counts { sum * (places.len() as f32 / valid as f32) } else { sum }
     }
 }

@@ -76,7 +76,7 @@ fn enters(triangle: Triangle) -> bool {
     let b = vertices[triangle.y];
     let c = vertices[triangle.z];
     let flat = cross(b.position_mm - a.position_mm, c.position_mm - a.position_mm);
-    let facing = dot(flat, sample_light(drawn.light, a.position_mm).dir_to_light);
+    let facing = dot(flat, dir_to_light(drawn.light, a.position_mm));
     return (facing > 0.0) == (dot(flat, a.normal + b.normal + c.normal) >= 0.0);
 }
 
@@ -106,6 +106,6 @@ fn entered(surface: Surface) -> vec3f {
     let rho_s = scalar_at(material.rho_s, textureSampleLevel(rho_s_map, repeating, uv, 0.0));
     let roughness = scalar_at(material.roughness, textureSampleLevel(roughness_map, repeating, uv, 0.0));
     let albedo = material.albedo_factor * textureSampleLevel(albedo_map, repeating, uv, 0.0).rgb;
-    let cos = max(dot(normal, sample_light(drawn.light, surface.place_mm).dir_to_light), 0.0);
+    let cos = max(dot(normal, dir_to_light(drawn.light, surface.place_mm)), 0.0);
     return film(albedo, material.albedo_mix) * (cos * rho_dt(rho_dt_table, linear, cos, roughness, rho_s));
 }

@@ -219,15 +219,15 @@ impl Studio {
     fn refine(&mut self, wish: &Wish, mut failed: [bool; 2], desk: &Desk) {
         let most = (0..wish.looks.len()).map(|side| rounds(wish, side)).max().unwrap_or(1);
         for round in 1..most {
-            for side in 0..wish.looks.len() {
+            for (side, failed) in failed.iter_mut().enumerate().take(wish.looks.len()) {
                 if desk.wishes.has_news() {
                     return;
                 }
-                if failed[side] || round >= rounds(wish, side) {
+                if *failed || round >= rounds(wish, side) {
                     continue;
                 }
                 match self.paint(wish, side, (Stage::Fine, round), desk) {
-                    Some(is_drawn) => failed[side] = !is_drawn,
+                    Some(is_drawn) => *failed = !is_drawn,
                     None => return,
                 }
             }

@@ -31,8 +31,11 @@ impl MixtureSampler {
 
     /// The radius that holds a share of the samples, mm; it grows with the share, unlike [`RadialSampler::radius_mm`].
     pub fn radius_holding(&self, share: f32) -> f32 {
-        let ends = self.parts.iter().map(|(_, sampler)| sampler.radius_mm(share));
-        let (mut low, mut high) = ends.fold((f32::INFINITY, 0.0f32), |(lo, hi), r| (lo.min(r), hi.max(r)));
+        let (mut low, mut high) = (0.0, self.radius_mm(share).max(f32::MIN_POSITIVE));
+        // A part may be a mixture itself, whose radii do not grow with the share.
+        while self.cdf(high) < share && high < f32::MAX / 2.0 {
+            high *= 2.0;
+        }
         // Halvings to the last digit of a float.
         for _ in 0..40 {
             let middle = 0.5 * (low + high);

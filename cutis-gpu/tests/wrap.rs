@@ -26,7 +26,7 @@ fn same_on_both(test: &str, scene: &Scene, wrap: WrapSettings, allowed: Toleranc
 #[test]
 fn the_paper_s_table_on_the_built_in_head() {
     let usual = WrapSettings::default();
-    same_on_both("the_paper_s_table", &head_in_the_studio(), usual, tolerances::WRAPPED_HEAD);
+    same_on_both("the_paper_s_table", &head_in_the_studio(), usual, tolerances::WRAPPED_HEAD[0]);
 }
 
 /// Every number other than usual, so that each is missed where it is not handed on: the wide wrap of each channel, green tint,
@@ -45,5 +45,5 @@ fn every_number_counts_by_the_formula() {
         ..WrapSettings::default()
     };
     let scene = Scene { environment: None::<Environment>, ..head_in_the_studio() };
-    same_on_both("every_number_counts", &scene, wrap, tolerances::WRAPPED_HEAD);
+    same_on_both("every_number_counts", &scene, wrap, tolerances::WRAPPED_HEAD[1]);
 }

@@ -52,17 +52,27 @@ mod tests {
         let settings = WrapSettings::default();
         let wraps = Vec3::new(0.4, 0.2, 0.0);
         let table = SkinTable::new(&settings, wraps);
-        let mut worst = Vec4::ZERO;
+        // Between the middles of the outermost entries.
+        let end = 1.0 - 1.0 / SIZE as f32;
+        let entry = 2.0 / SIZE as f32;
+        let (mut worst, mut worst_power) = (Vec3::ZERO, 0.0f32);
         for i in 0..=400 {
             for j in 0..=40 {
-                let (cos_light, cos_half) = (i as f32 / 200.0 - 1.0, j as f32 / 20.0 - 1.0);
-                let off = table.at(cos_light, cos_half) - settings.light(wraps, cos_light, cos_half);
-                worst = worst.max(off.abs());
+                let (cos_light, cos_half) = ((i as f32 / 200.0 - 1.0) * end, (j as f32 / 20.0 - 1.0) * end);
+                let exact = settings.light(wraps, cos_light, cos_half);
+                let off = (table.at(cos_light, cos_half) - exact).abs();
+                worst = worst.max(off.truncate());
+                // The power begins with a step where light does.
+                if (cos_light + wraps.max_element()).abs() > entry {
+                    worst_power = worst_power.max(off.w);
+                }
             }
         }
-        eprintln!("table: off by {worst:?} at most");
-        // rgb: at the kink a quarter of an entry's rise, 1/4 · 2/256, and the edge beyond the last middle, half of one. Alpha:
-        // the curvature 40 · 39 of the power over (2/256)²/8, 1.2e-2, and its end, where light begins, within an entry.
-        assert!(worst.truncate().max_element() < 5e-3, "{worst}");
+        eprintln!("table: light off by {worst:?}, power by {worst_power} at most");
+        // At the kink of the cosine a quarter of what an entry rises by; the smooth step of the tint bends by 6 · 0.15/0.3²
+        // per squared cosine, an eighth of which times the entry's square is 8e-5.
+        assert!(worst.max_element() < 0.25 * entry + 1e-4, "{worst}");
+        // The power bends by 40 · 39 at most.
+        assert!(worst_power < 40.0 * 39.0 * entry * entry / 8.0 + 1e-4, "{worst_power}");
     }
 }

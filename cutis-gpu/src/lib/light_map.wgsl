@@ -13,6 +13,14 @@ struct LightMap {
     directional: bool,
 }
 
+/// Which light sees which object.
+struct Drawn {
+    light: u32,
+    object: u32,
+    pad0: u32,
+    pad1: u32,
+}
+
 fn map_of(l: u32) -> LightMap {
     return LightMap(
         lights[l].map_right,

@@ -2,7 +2,6 @@
 
 use crate::Gpu;
 use crate::map::{Map, View};
-use crate::passes::SLIDES;
 use crate::passes::resolve::ResolveInputs;
 use crate::passes::shadow::Drawn;
 use crate::pipeline::{Blueprint, Bound, DEPTH, Pipeline};
@@ -97,30 +96,9 @@ fn draw(
     targets: [&View; 2],
     (depth, clear_depth): (&Map, bool),
 ) -> Step {
-    let ResolveInputs { samplers, environment, geometry, material, charts, .. } = inputs;
     let numbers = gpu.uniform("drawn", &drawn);
-    let mut bound = vec![
-        (0, Bound::Buffer(&geometry.vertices)),
-        (1, Bound::Buffer(&geometry.triangles)),
-        (3, Bound::Buffer(inputs.lights)),
-        (4, Bound::Buffer(&material.numbers)),
-        (5, Bound::Buffer(&environment.numbers)),
-        (6, Bound::Texture(charts[0].map.view())),
-        (10, Bound::Texture(&inputs.visibility.array)),
-        (11, Bound::Texture(inputs.ambient.view())),
-        (12, Bound::Texture(charts[1].map.view())),
-        (14, Bound::Texture(inputs.rho_dt.view())),
-        (15, Bound::Texture(material.albedo.view())),
-        (16, Bound::Texture(material.relief.view())),
-        (17, Bound::Texture(material.rho_s.view())),
-        (18, Bound::Texture(material.roughness.view())),
-        (19, Bound::Sampler(&samplers.linear)),
-        (20, Bound::Sampler(&samplers.repeating)),
-        (21, Bound::Sampler(&samplers.around_sky)),
-        (SLIDES, Bound::Buffer(inputs.slides)),
-        (32, Bound::Texture(environment.irradiance.view())),
-        (40, Bound::Buffer(&numbers)),
-    ];
+    let mut bound = inputs.lit_surface();
+    bound.extend([(32, Bound::Texture(inputs.environment.irradiance.view())), (40, Bound::Buffer(&numbers))]);
     bound.extend_from_slice(more);
     Step::Draw(Draw {
         pipeline: pipeline.clone(),
@@ -129,7 +107,7 @@ fn draw(
         depth: Some((depth.view().clone(), clear_depth)),
         clear: (drawn.object == 0).then_some(wgpu::Color::TRANSPARENT),
         indices: None,
-        vertices: 3 * geometry.triangle_count,
+        vertices: 3 * inputs.geometry.triangle_count,
         instances: 1,
     })
 }

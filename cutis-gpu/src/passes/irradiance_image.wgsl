@@ -4,13 +4,6 @@
 @group(0) @binding(40) var<uniform> drawn: Drawn;
 @group(0) @binding(32) var irradiance_map: texture_2d<f32>;
 
-struct Drawn {
-    light: u32,
-    object: u32,
-    pad0: u32,
-    pad1: u32,
-}
-
 struct Image {
     /// Place in xyz, mm, and the triangle's normal, packed, in w.
     @location(0) place: vec4u,

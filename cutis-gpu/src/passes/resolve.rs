@@ -99,6 +99,33 @@ pub struct ResolveInputs<'a> {
     pub rho_dt: &'a Map,
 }
 
+impl<'a> ResolveInputs<'a> {
+    /// What is read to light a place of the surface, whoever looks at it.
+    pub fn lit_surface(&self) -> Vec<(u32, Bound<'a>)> {
+        let Self { samplers, environment, geometry, material, charts, .. } = *self;
+        vec![
+            (0, Bound::Buffer(&geometry.vertices)),
+            (1, Bound::Buffer(&geometry.triangles)),
+            (3, Bound::Buffer(self.lights)),
+            (4, Bound::Buffer(&material.numbers)),
+            (5, Bound::Buffer(&environment.numbers)),
+            (6, Bound::Texture(charts[0].map.view())),
+            (10, Bound::Texture(&self.visibility.array)),
+            (11, Bound::Texture(self.ambient.view())),
+            (12, Bound::Texture(charts[1].map.view())),
+            (14, Bound::Texture(self.rho_dt.view())),
+            (15, Bound::Texture(material.albedo.view())),
+            (16, Bound::Texture(material.relief.view())),
+            (17, Bound::Texture(material.rho_s.view())),
+            (18, Bound::Texture(material.roughness.view())),
+            (19, Bound::Sampler(&samplers.linear)),
+            (20, Bound::Sampler(&samplers.repeating)),
+            (21, Bound::Sampler(&samplers.around_sky)),
+            (SLIDES, Bound::Buffer(self.slides)),
+        ]
+    }
+}
+
 /// What is drawn into.
 #[derive(Debug, Clone, Copy)]
 pub struct Canvas<'a> {
@@ -243,29 +270,11 @@ fn pipeline(
 }
 
 fn bind(gpu: &Gpu, pipeline: &Pipeline, inputs: &ResolveInputs) -> Binding {
-    let ResolveInputs { samplers, environment, geometry, material, charts, .. } = inputs;
-    let mut bound = vec![
-        (0, Bound::Buffer(&geometry.vertices)),
-        (1, Bound::Buffer(&geometry.triangles)),
+    let mut bound = inputs.lit_surface();
+    bound.extend([
         (2, Bound::Buffer(inputs.camera)),
-        (3, Bound::Buffer(inputs.lights)),
-        (4, Bound::Buffer(&material.numbers)),
-        (5, Bound::Buffer(&environment.numbers)),
-        (6, Bound::Texture(charts[0].map.view())),
-        (10, Bound::Texture(&inputs.visibility.array)),
-        (11, Bound::Texture(inputs.ambient.view())),
-        (12, Bound::Texture(charts[1].map.view())),
-        (13, Bound::Texture(&environment.reflections.array)),
-        (14, Bound::Texture(inputs.rho_dt.view())),
-        (15, Bound::Texture(material.albedo.view())),
-        (16, Bound::Texture(material.relief.view())),
-        (17, Bound::Texture(material.rho_s.view())),
-        (18, Bound::Texture(material.roughness.view())),
-        (19, Bound::Sampler(&samplers.linear)),
-        (20, Bound::Sampler(&samplers.repeating)),
-        (21, Bound::Sampler(&samplers.around_sky)),
-        (SLIDES, Bound::Buffer(inputs.slides)),
-    ];
+        (13, Bound::Texture(&inputs.environment.reflections.array)),
+    ]);
     bound.extend_from_slice(&inputs.inside);
     pipeline.bind(gpu, 0, &bound)
 }

@@ -6,13 +6,6 @@
 @group(0) @binding(2) var<storage, read> lights: array<Light>;
 @group(0) @binding(3) var<uniform> drawn: Drawn;
 
-struct Drawn {
-    light: u32,
-    object: u32,
-    pad0: u32,
-    pad1: u32,
-}
-
 struct Seen {
     @builtin(position) position: vec4f,
     @location(0) depth_mm: f32,

@@ -82,7 +82,7 @@ impl Paper {
                     // Section 6.2: "We omit the Jacobian for simplicity"; the counter of valid samples.
                     jacobian: false,
                     count: SampleCount::Valid,
-                    // Section 5: "we take the camera view"; views of lights are future work in section 8.
+                    // Section 5: "we take the camera view"; views of lights are a way out that section 7.1 names.
                     light_views: false,
                     profile: ImageSpaceProfile::Medium,
                     // Section 6.1 combines importance samples with uniform ones, and tells no numbers.

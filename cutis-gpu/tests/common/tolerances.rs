@@ -66,6 +66,12 @@ pub const THREE_LIGHTS: Tolerance = tolerance(0.0552, 0.0247);
 /// The head by wrap lighting, with its shine and the environment, and by wide wraps alone: shadows are as sharp as the maps
 /// that tell them. Measured 0.0412 and 0.0189, 0.0143 and 0.0273.
 pub const WRAPPED_HEAD: [Tolerance; 2] = [tolerance(0.055, 0.026), tolerance(0.02, 0.037)];
+/// The head before a lamp, drawn by distances through it: the picture, and what comes through.
+pub const BACKLIT_HEAD: [Tolerance; 2] = [tolerance(0.055, 0.055), tolerance(0.09, 0.06)];
+/// Two fingers with all numbers of that technique other than usual.
+pub const PEELED_FINGERS: [Tolerance; 2] = [tolerance(0.022, 0.004), tolerance(0.022, 0.004)];
+/// A finger in a pose against one that was uploaded so.
+pub const POSED_FINGER: Tolerance = tolerance(0.002, 1e-3);
 /// Picture of the scanned head.
 pub const SCAN: Tolerance = tolerance(0.0265, 0.0405);
 /// Exact convolution: relative RMS power error of one lit texel (d'Eon et al. 2007, equation 10). The processor's limit.

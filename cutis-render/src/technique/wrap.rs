@@ -12,7 +12,6 @@ use crate::RenderError;
 use crate::lit_scene::Lit;
 use crate::passes::irradiance::from_environment;
 use crate::passes::resolve::Place;
-use crate::passes::visibility::faces;
 use crate::prepare::kernel::kernel_of;
 use crate::prepare::skin_table::{SkinTable, smoothstep};
 use crate::settings::within;
@@ -43,8 +42,8 @@ pub struct WrapSettings {
     pub shine: WrapShine,
     /// Colour of the paper's specular power, linear.
     pub specular_colour: Vec3,
-    /// How far along the normal a place beyond the terminator looks for what hides a light from it, mm: beyond the bulge of
-    /// its own body.
+    /// How far above the surface a place where the light ends looks for what hides it, mm: beyond the bulge of its own body.
+    /// A tenth of that at the terminator.
     pub shadow_offset_mm: f32,
 }
 
@@ -106,7 +105,7 @@ impl Default for WrapSettings {
             radius_mm: None,
             shine: WrapShine::Measured,
             specular_colour: Vec3::splat(0.2),
-            shadow_offset_mm: 2.0,
+            shadow_offset_mm: 10.0,
         }
     }
 }
@@ -197,16 +196,19 @@ impl<'a> Wrapped<'a> {
     }
 
     /// Fraction of a light that is seen. Beyond the terminator the body itself would hide all of it: what hides the light
-    /// from a place above counts.
+    /// from a place above counts, more and more from where the wrap begins to matter.
     fn visible(&self, place: &Place, l: usize) -> f32 {
         let (point, light) = (&place.point, &self.lit.scene.lights[l]);
-        if faces(point, light) {
+        let wrap = self.bodies[place.object_number].wraps.max_element();
+        let cos = point.normal.dot(light.sample(point.position_mm).dir_to_light);
+        if cos >= wrap {
             return place.visible(l);
         }
-        let offset_mm = self.lit.settings.techniques.wrap.shadow_offset_mm;
+        let offset_mm = self.lit.settings.techniques.wrap.shadow_offset_mm * offset_share(cos, wrap);
         let origin = point.position_mm + point.normal * offset_mm;
         let towards = light.sample(origin);
-        f32::from(!self.lit.bvh.occluded(origin, towards.dir_to_light, towards.distance_mm))
+        let above = f32::from(!self.lit.bvh.occluded(origin, towards.dir_to_light, towards.distance_mm));
+        above + (place.visible(l) - above) * (cos / wrap).max(0.0)
     }
 
     /// Sum over all lights of what `of_light` makes of irradiance, table and rho_dt.
@@ -228,6 +230,13 @@ impl<'a> Wrapped<'a> {
         }
         sum
     }
+}
+
+/// Part of the shadow's offset at a cosine of the smooth surface: a body of radius R bulges by R cos²/2 before a place beyond
+/// its terminator.
+fn offset_share(cos: f32, wrap: f32) -> f32 {
+    let beyond = (-cos / wrap).clamp(0.0, 1.0);
+    0.1 + 0.9 * beyond * beyond
 }
 
 impl Inside for Wrapped<'_> {

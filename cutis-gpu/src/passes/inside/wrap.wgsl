@@ -100,16 +100,33 @@ fn listing(cos_light: f32, cos_half: f32) -> vec4f {
 }
 
 /// Fraction of a light that is seen. Beyond the terminator the body itself would hide all of it: what hides the light from a
-/// place above counts.
+/// place above counts, more and more from where the wrap begins to matter.
 fn wrapped_visible(place: Place, l: u32, towards: LightSample, texels: Around, weights: vec4f) -> f32 {
-    if dot(place.smooth_normal, towards.dir_to_light) >= 0.0 {
-        return visible_part(l, texels, weights);
+    let widest = max(wrap.wraps.x, max(wrap.wraps.y, wrap.wraps.z));
+    let cos = dot(place.smooth_normal, towards.dir_to_light);
+    let visible = visible_part(l, texels, weights);
+    if cos >= widest {
+        return visible;
     }
+    let offset_mm = wrap.shadow_offset_mm * offset_share(cos, widest);
+    let above = visible_above(l, place.position_mm + place.smooth_normal * offset_mm);
+    return mix(above, visible, max(cos / widest, 0.0));
+}
+
+/// Part of the shadow's offset at a cosine of the smooth surface: a body of radius R bulges by R cos²/2 before a place beyond
+/// its terminator.
+fn offset_share(cos: f32, widest: f32) -> f32 {
+    let beyond = clamp(-cos / widest, 0.0, 1.0);
+    return 0.1 + 0.9 * beyond * beyond;
+}
+
+/// Whether a light sees a place above the surface, 0 or 1.
+fn visible_above(l: u32, place_mm: vec3f) -> f32 {
     let map = map_of(l);
     if map.layer == NO_MAP {
         return 1.0;
     }
-    let axes_mm = in_map_axes(map, place.position_mm + place.smooth_normal * wrap.shadow_offset_mm);
+    let axes_mm = in_map_axes(map, place_mm);
     let size = vec2f(textureDimensions(depths));
     let texel = vec2i(floor(map_uv(map, axes_mm) * size));
     if any(texel < vec2i(0)) || any(texel >= vec2i(size)) {

@@ -38,7 +38,8 @@ pub struct WrapArgs {
     /// Colour of that power [parts of the irradiance, linear, 0 to 1, default 0.2,0.2,0.2]
     #[arg(long, value_name = "R,G,B", allow_hyphen_values = true, value_parser = colour)]
     pub wrap_specular: Option<Vec3>,
-    /// How far above the surface a place beyond the terminator looks for what hides a light [mm, 0 to 1000, default 2]
+    /// How far above the surface a place where the light ends looks for what hides it; a tenth of that at the terminator [mm,
+    /// 0 to 1000, default 10]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub wrap_shadow_offset: Option<f32>,
 }

@@ -35,6 +35,7 @@ use cutis_render::prepare::radial;
 use cutis_render::prepare::rho_dt::{COSINES, ROUGHNESSES};
 use cutis_render::specular_brdf::MIN_ROUGHNESS;
 use cutis_render::technique::depth_absorption;
+use cutis_render::technique::image_space;
 use std::mem::{offset_of, size_of};
 
 fn module(source: &str) -> naga::Module {
@@ -134,7 +135,7 @@ fn structs_of_the_scene_match_wgsl() {
 
 #[test]
 fn structs_of_the_passes_match_wgsl() {
-    same_layout!(Drawn, shaders::SHADOW, "Drawn", [light, object, pad0, pad1]);
+    same_layout!(Drawn, shaders::SHADOW, "Drawn", [light, object, smooth_plane, pad0]);
     same_layout!(Grown, shaders::DEPTH_MAP, "Grown", [light, growth_mm, pad0, pad1]);
     same_layout!(
         DepthAbsorption,
@@ -312,12 +313,13 @@ fn image_space_matches_wgsl() {
     );
     same_layout!(Radial, shaders::SAMPLE_PROFILE, "Radial", [fine_mm, entries_per_e, pad0, pad1]);
     same_layout!(PlaceToLook, shaders::SAMPLE_PROFILE, "PlaceToLook", [offset_mm, density_per_mm2, pad0]);
-    same_layout!(Drawn, shaders::IRRADIANCE_IMAGE, "Drawn", [light, object, pad0, pad1]);
+    same_layout!(Drawn, shaders::IRRADIANCE_IMAGE, "Drawn", [light, object, smooth_plane, pad0]);
     let expected = [
         ("ENTRIES", radial::ENTRIES as f64),
         ("INTERLEAVED_PIXELS", f64::from(INTERLEAVED_PIXELS)),
         ("GRAZING", f64::from(irradiance_image::GRAZING)),
         ("ROUNDING", f64::from(irradiance_image::ROUNDING)),
+        ("MAX_GAIN", f64::from(image_space::MAX_GAIN)),
         ("MAX_JACOBIAN", f64::from(irradiance_image::MAX_JACOBIAN)),
         ("SAME_SURFACE_TEXELS", f64::from(irradiance_image::SAME_SURFACE_TEXELS)),
         ("SAME_SIDE", f64::from(irradiance_image::SAME_SIDE)),

@@ -17,8 +17,9 @@ struct LightMap {
 struct Drawn {
     light: u32,
     object: u32,
+    /// For images of the irradiance: 1 if they hold normals of the smooth surface.
+    smooth_plane: u32,
     pad0: u32,
-    pad1: u32,
 }
 
 fn map_of(l: u32) -> LightMap {

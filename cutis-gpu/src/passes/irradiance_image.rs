@@ -58,11 +58,10 @@ impl IrradianceImagePass {
         &self,
         gpu: &Gpu,
         inputs: &ResolveInputs,
-        object: u32,
+        drawn: Drawn,
         images: &IrradianceImages,
         depth: &Map,
     ) -> Step {
-        let drawn = Drawn { light: 0, object, pad0: 0, pad1: 0 };
         let targets = [&images.places.layers[0], &images.light.layers[0]];
         let more = [(2, Bound::Buffer(inputs.camera))];
         draw(gpu, &self.from_camera, inputs, drawn, &more, targets, (depth, false))

@@ -5,7 +5,7 @@
 @group(0) @binding(32) var irradiance_map: texture_2d<f32>;
 
 struct Image {
-    /// Place in xyz, mm, and the triangle's normal, packed, in w.
+    /// Place in xyz, mm, and a normal, packed, in w: that of the triangle, or of the smooth surface.
     @location(0) place: vec4u,
     /// Irradiance, W/m², and the number of the object and one in w.
     @location(1) light: vec4f,
@@ -25,7 +25,7 @@ fn light_image(seen: Seen) -> Image {
     let smooth_normal = unit_or(seen.normal, vec3f(0.0, 1.0, 0.0));
     let across = cross(dpdx(seen.position_mm), dpdy(seen.position_mm));
     let flat_normal = unit_or(across * select(-1.0, 1.0, dot(across, smooth_normal) > 0.0), smooth_normal);
-    let place = vec4u(bitcast<vec3u>(seen.position_mm), pack_unit(flat_normal));
+    let place = vec4u(bitcast<vec3u>(seen.position_mm), pack_unit(select(flat_normal, smooth_normal, drawn.smooth_plane != 0u)));
     return Image(place, vec4f(irradiance_at(seen, smooth_normal), f32(drawn.object + 1u)));
 }
 

@@ -18,6 +18,7 @@ const ENTRIES: u32 = 1024u;
 const INTERLEAVED_PIXELS: u32 = 16u;
 const GRAZING: f32 = 0.02;
 const ROUNDING: f32 = 1e-6;
+const MAX_GAIN: f32 = 2.0;
 const MAX_JACOBIAN: f32 = 8.0;
 const SAME_SURFACE_TEXELS: f32 = 2.0;
 const SAME_SIDE: f32 = 0.3;
@@ -115,15 +116,18 @@ fn found_in_image(image: u32, own: Texel, first: u32) -> vec3f {
             continue;
         }
         valid++;
-        let r = profile_at(own.object, length(offset_mm + seen.from_point_mm));
-        if all(r == vec3f(0.0)) || shown_before(image, seen, own.object) {
+        let profile = profile_at(own.object, length(offset_mm + seen.from_point_mm));
+        if all(profile == vec3f(0.0)) || shown_before(image, seen, own.object) {
             continue;
         }
         var area = 1.0;
         if gathering.jacobian != 0u {
             area = jacobian(view, seen.position_mm, seen.normal, plane_mm, own.normal);
         }
-        sum += r * seen.irradiance_w_per_m2 * (area / place.density_per_mm2);
+        let drawn = profile_at(own.object, length(offset_mm));
+        let most = select(1.0, MAX_GAIN, gathering.jacobian != 0u);
+        let found = min(profile * area, drawn * most);
+        sum += found * seen.irradiance_w_per_m2 / place.density_per_mm2;
     }
     // Where lights look for what the camera misses, it must not be made up for: what they miss as well is dark.
     if gathering.count_valid != 0u && gathering.light_count == 0u && valid > 0u {

@@ -21,10 +21,10 @@ pub struct Drawn {
     pub light: u32,
     /// Number of the object.
     pub object: u32,
+    /// For images of the irradiance: 1 if they hold normals of the smooth surface.
+    pub smooth_plane: u32,
     /// Fills up the struct.
     pub pad0: u32,
-    /// Fills up the struct.
-    pub pad1: u32,
 }
 
 /// Maps of all lights that have one, one layer each.

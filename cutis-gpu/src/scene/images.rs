@@ -10,6 +10,7 @@ use crate::passes::irradiance_image::{IrradianceImages, depth_buffer};
 use crate::passes::sample_profile::Profiles;
 use crate::passes::shadow::Drawn;
 use crate::step::Step;
+use bytemuck::Zeroable;
 use cutis_render::Settings;
 use cutis_render::technique::image_space::{LIGHT_VIEW_TEXELS, MAX_LIGHT_VIEWS};
 use cutis_scene::Scene;
@@ -23,6 +24,7 @@ pub struct Images {
     pub profiles: Profiles,
     lights: Vec<u32>,
     depth: Map,
+    smooth_plane: bool,
 }
 
 impl Images {
@@ -39,8 +41,14 @@ impl Images {
             of_lights: IrradianceImages::new(gpu, [side, side], lights.len() as u32),
             profiles: Profiles::new(gpu, scene, settings, &lights)?,
             depth: depth_buffer(gpu, side),
+            smooth_plane: !settings.techniques.image_space.jacobian,
             lights,
         })
+    }
+
+    /// How an image shows an object.
+    pub fn drawn(&self, object: u32) -> Drawn {
+        Drawn { object, smooth_plane: u32::from(self.smooth_plane), ..Drawn::zeroed() }
     }
 
     /// Draws what the lights see, in every frame after the light has entered.
@@ -48,7 +56,7 @@ impl Images {
         let mut steps = Vec::new();
         for (layer, &light) in (0..).zip(&self.lights) {
             for (object, maps) in (0..).zip(objects) {
-                let drawn = Drawn { light, object, pad0: 0, pad1: 0 };
+                let drawn = Drawn { light, ..self.drawn(object) };
                 let inputs = maps.resolve_inputs(passes, shared, None);
                 let into = (layer, &self.depth);
                 steps.push(passes.irradiance_image.light_step(gpu, &inputs, drawn, &self.of_lights, into));

@@ -146,7 +146,7 @@ impl Gathering {
     ) -> Vec<Step> {
         let seen = (0..).zip(objects).map(|(object, maps)| {
             let inputs = maps.resolve_inputs(passes, shared, None);
-            passes.irradiance_image.camera_step(gpu, &inputs, object, &self.image, depth)
+            passes.irradiance_image.camera_step(gpu, &inputs, images.drawn(object), &self.image, depth)
         });
         let from = [&self.image, &images.of_lights];
         let gather = passes.sample_profile.step(gpu, shared, &images.profiles, from, &self.gathered);

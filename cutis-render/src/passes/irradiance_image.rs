@@ -5,6 +5,7 @@ use crate::lit_scene::Lit;
 use crate::passes::irradiance::irradiance_at;
 use crate::prepare::LightView;
 use crate::progress::Progress;
+use crate::technique::image_space::plane_normal;
 use cutis_scene::Camera;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -131,7 +132,7 @@ pub struct Seen {
     pub position_mm: Vec3,
     /// From the point that was asked for to that place, mm: nothing where both are one but for rounding.
     pub from_point_mm: Vec3,
-    /// Unit normal of the triangle there: places lie on it, and not on the smooth surface.
+    /// Unit normal there: see [`plane_normal`].
     pub normal: Vec3,
     /// Irradiance under the surface, W/m².
     pub irradiance_w_per_m2: Vec3,
@@ -213,7 +214,7 @@ fn seen_along(lit: Lit, from_mm: Vec3, dir: Vec3) -> Texel {
     let chart = object.charts.of_triangle[hit.triangle as usize];
     Texel {
         position_mm: point.position_mm,
-        normal: point.flat_normal,
+        normal: plane_normal(&lit.settings.techniques.image_space, &point),
         irradiance_w_per_m2: irradiance_at(lit, hit.object as usize, &point, chart),
         object: hit.object,
     }

@@ -16,7 +16,7 @@ use crate::prepare::LightView;
 use crate::prepare::radial::{PlaceToLook, RadialKernel};
 use crate::settings::within;
 use crate::{Progress, RenderError};
-use cutis_scene::{Camera, Object};
+use cutis_scene::{Camera, Object, SurfacePoint};
 use glam::Vec3;
 use std::fmt;
 
@@ -24,6 +24,10 @@ use std::fmt;
 pub const MAX_LIGHT_VIEWS: usize = 4;
 /// Width and height of what a light sees, texels.
 pub const LIGHT_VIEW_TEXELS: usize = 512;
+
+/// Most that a sample may count, in times of one that lies where it was drawn: at contours some are seen much nearer than that,
+/// and a few of them would make specks. Without the Jacobian, which holds most of them in check, none counts more.
+pub const MAX_GAIN: f32 = 2.0;
 
 /// Numbers of the technique `image-space`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -172,6 +176,12 @@ pub fn light_views(lit: Lit) -> Vec<View> {
     wanted.filter_map(|light| Some(View::of_light(&LightView::over_points(light, points())?))).collect()
 }
 
+/// Normal of the plane that samples lie on, and of what images show: that of the triangle, on which all around the point lies,
+/// too. Without the Jacobian triangles would show where they meet, and it is that of the smooth surface, as in the paper.
+pub fn plane_normal(settings: &ImageSpaceSettings, point: &SurfacePoint) -> Vec3 {
+    if settings.jacobian { point.flat_normal } else { point.normal }
+}
+
 /// The point that light is gathered for, and the plane that samples lie on.
 struct Gathering<'a> {
     settings: &'a ImageSpaceSettings,
@@ -193,8 +203,8 @@ impl Gathering<'_> {
             let plane_mm = self.middle_mm + offset_mm;
             let Some(seen) = image.through(plane_mm, self.object) else { continue };
             valid += 1;
-            let r = self.kernel.at_mm((offset_mm + seen.from_point_mm).length()).truncate();
-            if r == Vec3::ZERO || before.iter().any(|image| image.shows(&seen, self.object)) {
+            let profile = self.kernel.at_mm((offset_mm + seen.from_point_mm).length()).truncate();
+            if profile == Vec3::ZERO || before.iter().any(|image| image.shows(&seen, self.object)) {
                 continue;
             }
             let on_body = [seen.position_mm, seen.normal];
@@ -202,7 +212,10 @@ impl Gathering<'_> {
                 true => image.view.jacobian(on_body, [plane_mm, self.normal]),
                 false => 1.0,
             };
-            sum += r * seen.irradiance_w_per_m2 * (jacobian / place.density_per_mm2);
+            let drawn = self.kernel.at_mm(offset_mm.length()).truncate();
+            let most = if self.settings.jacobian { MAX_GAIN } else { 1.0 };
+            let found = (profile * jacobian).min(drawn * most);
+            sum += found * seen.irradiance_w_per_m2 / place.density_per_mm2;
         }
         // Where lights look for what the camera misses, it must not be made up for: what they miss as well is dark.
         let counts = self.settings.count == SampleCount::Valid && self.images.len() == 1 && valid > 0;
@@ -220,8 +233,7 @@ impl Inside for Sampled<'_> {
             kernel,
             object: place.object_number,
             middle_mm: place.point.position_mm,
-            // The plane of the triangle: what is seen around the point lies on it, too.
-            normal: place.point.flat_normal,
+            normal: plane_normal(&self.lit.settings.techniques.image_space, &place.point),
         };
         let places = kernel.places_of(place.sample);
         let of_lights = (1..self.images.len()).map(|number| gathering.found_in_image(number, places));

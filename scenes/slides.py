@@ -44,6 +44,31 @@ def square(x, y):
     return (255, 255, 255) if (math.floor(4 * x) + math.floor(4 * y)) % 2 else (0, 0, 0)
 
 
+def corner(x, y):
+    """A number from 0 to 1 for each corner of a lattice that repeats every 64: two rounds of an integer hash."""
+    h = (x % 64 * 374761393 + y % 64 * 668265263) & 0xFFFFFFFF
+    for _ in range(2):
+        h = ((h ^ (h >> 13)) * 1274126177) & 0xFFFFFFFF
+    return (h ^ (h >> 16)) / 0xFFFFFFFF
+
+
+def cloud(x, y):
+    """Numbers of a lattice, blended."""
+    i, j = math.floor(x), math.floor(y)
+    u, v = (t * t * (3 - 2 * t) for t in (x - i, y - j))
+    row = lambda j: corner(i, j) * (1 - u) + corner(i + 1, j) * u
+    return row(j) * (1 - v) + row(j + 1) * v
+
+
+def vein(x, y):
+    """Share of the dark mineral: thin veins across, bent by clouds, and a haze of it around them."""
+    bent = sum(cloud(2 ** k * 1.5 * (x + 1), 2 ** k * 1.5 * (y + 1)) / 2 ** k for k in range(5))
+    line = abs(math.sin(math.pi * (1.3 * x + 0.8 * y + 1.1 * bent)))
+    strength = cloud(2 * x + 20, 2 * y + 30)
+    haze = 0.35 * max(0.0, cloud(4 * x + 40, 4 * y + 50) - 0.3)
+    return (round(255 * min(1.0, strength * math.exp(-line * 6) + haze * (1 - line))),) * 3
+
+
 def slab(name, half_mm, thickness_mm, bevel_mm):
     """A square slab that faces +z, its upper edges bevelled; every face has a chart and a normal of its own."""
     lines = ["# A slab of marble, %g mm square and %g mm thick, made by slides.py." % (2 * half_mm, thickness_mm)]
@@ -72,4 +97,5 @@ def slab(name, half_mm, thickness_mm, bevel_mm):
 if __name__ == "__main__":
     write_png("stained_glass.png", 512, pane)
     write_png("checkerboard.png", 128, square)
+    write_png("veins.png", 512, vein)
     slab("marble_slab.obj", 40, 12, 1.5)

@@ -9,7 +9,7 @@ use common::{
 use cutis_gpu::GpuRenderer;
 use cutis_render::{Aov, CpuRenderer, Renderer, Settings, Silent};
 use cutis_scene::{Light, Projector, Scene, Texels, Texture};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::sync::Arc;
 
 fn settings() -> Settings {
@@ -86,6 +86,9 @@ fn projector(scene: &Scene, distance_mm: f32, tan_half_height: f32) -> Light {
         image: Arc::new(Texture::new(4, 2, Texels::LinearF32(colours.into_iter().chain(greys).collect()))),
         intensity_w_per_sr: Vec3::new(1.0, 0.9, 0.8) * (1e-3 * distance_mm).powi(2),
         radius_mm: 0.0,
+        // Across every border of the image.
+        shift: Vec2::new(0.3, -0.15),
+        drift_per_s: Vec2::ZERO,
     })
 }
 

@@ -8,8 +8,9 @@ use cutis_render::settings::TechniqueSettings;
 use cutis_render::technique::image_space::{ImageSpaceProfile, ImageSpaceSettings, SampleCount};
 use cutis_render::{Aov, CpuRenderer, Frame, Renderer, Settings, Silent, TechniqueName};
 use cutis_scene::validation::shapes;
-use cutis_scene::{Camera, Light, Object, Scattering, Scene};
+use cutis_scene::{Camera, Light, Object, ScalarMap, Scattering, Scene, SecondMedium, Texels, Texture};
 use glam::Vec3;
+use std::sync::Arc;
 
 fn settings(image_space: ImageSpaceSettings) -> Settings {
     Settings {
@@ -65,6 +66,30 @@ fn the_built_in_head_by_other_numbers() {
     if let Some(frames) = on_both(test, &scene, &settings) {
         same_layer(test, &frames, 0, tolerances::SAMPLED_HEAD);
     }
+}
+
+/// Two media, mixed by another channel of a map of few texels, in another round: every pixel takes the mixture that it takes on
+/// the processor.
+#[test]
+fn a_patch_of_two_media() {
+    let test = "image-space: a patch of two media";
+    let mut scene = patch_under_a_spot(patch(|u| 40.0 * u, |v| 40.0 * v));
+    let texels = [0.0, 0.4, 0.9, 0.2, 1.0, 0.6, 0.3, 0.7, 0.1].map(|share| [0.0, 0.3, share, 1.0]).to_vec();
+    let map = Arc::new(Texture::new(3, 3, Texels::LinearF32(texels)));
+    let material = &mut scene.objects[0].material;
+    material.scattering = Scattering::Preset("marble".to_owned());
+    material.mixed_with = Some(SecondMedium {
+        scattering: Scattering::Preset("ketchup".to_owned()),
+        share: ScalarMap { offset: 0.1, gain: 0.8, texture: Some((map, 2)) },
+    });
+    // No neighbours, whose mixtures differ, are in the mean.
+    let alone = ImageSpaceSettings { round: 3, ..ImageSpaceSettings::default() };
+    let Some(frames) = on_both(test, &scene, &settings(alone)) else { return };
+    same_layer(test, &frames, 0, tolerances::SAMPLED_MIXTURE);
+    scene.objects[0].material.mixed_with = None;
+    let plain = on_both(test, &scene, &settings(alone)).expect("there was an adapter");
+    let apart = difference(&frames[0].layers[0].pixels, &plain[0].layers[0].pixels, |_| true);
+    assert!(apart.mean > 0.05, "the second medium is seen: {apart:?}");
 }
 
 /// A thin plate between the camera and the only lamp: all light comes from what the lamp sees.

@@ -110,14 +110,17 @@ fn structs_of_the_scene_match_wgsl() {
             slide_width,
             slide_height,
             slide_right,
-            tan_half_height
+            tan_half_height,
+            slide_shift,
+            pad0,
+            pad1
         ]
     );
     same_layout!(
         GpuMaterial,
         shaders::ATLAS,
         "Material",
-        [albedo_factor, albedo_mix, rho_s, f0, roughness, relief_strength, relief_space, pad0, pad1, pad2]
+        [albedo_factor, albedo_mix, rho_s, f0, roughness, relief_strength, share, relief_space]
     );
     same_layout!(
         GpuEnvironment,
@@ -309,7 +312,7 @@ fn image_space_matches_wgsl() {
         Gathering,
         shaders::SAMPLE_PROFILE,
         "Gathering",
-        [lights, light_count, place_count, jacobian, count_valid]
+        [lights, light_count, place_count, jacobian, count_valid, mixtures, round, pad0, pad1]
     );
     same_layout!(Radial, shaders::SAMPLE_PROFILE, "Radial", [fine_mm, entries_per_e, pad0, pad1]);
     same_layout!(PlaceToLook, shaders::SAMPLE_PROFILE, "PlaceToLook", [offset_mm, density_per_mm2, pad0]);

@@ -6,7 +6,7 @@ use common::{head_in_the_studio, renderer};
 use cutis_gpu::{GpuRenderer, GpuScene};
 use cutis_render::{Settings, Silent};
 use cutis_scene::{Light, Pose, Projector, Scene, Texels, Texture, Wave};
-use glam::{Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 use std::sync::{Arc, LazyLock};
 
 fn settings() -> Settings {
@@ -57,6 +57,8 @@ fn head() -> Scene {
             image: Arc::clone(&SLIDE),
             intensity_w_per_sr: Vec3::splat(0.6),
             radius_mm: 5.0,
+            shift: Vec2::ZERO,
+            drift_per_s: Vec2::ZERO,
         }),
     ];
     scene
@@ -79,6 +81,7 @@ fn relit() -> Scene {
             Light::Projector(projector) => {
                 projector.position_mm.y = -80.0;
                 projector.axes = Projector::axes(Vec3::new(-0.14, 0.11, -1.0).normalize(), Vec3::X);
+                projector.shift = Vec2::new(0.3, -0.15);
                 projector.tan_half_height = 0.2;
             }
         }

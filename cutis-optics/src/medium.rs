@@ -114,6 +114,17 @@ impl Medium {
         }
     }
 
+    /// A mixture with another medium that fills a share of the volume, 0 to 1: particles of both are met as often as they fill
+    /// it, and the index of refraction goes with them.
+    pub fn mixed(&self, other: &Self, share: f64) -> Self {
+        let mean = |a: f64, b: f64| a * (1.0 - share) + b * share;
+        Self {
+            sigma_a_per_mm: mean(self.sigma_a_per_mm, other.sigma_a_per_mm),
+            sigma_s_reduced_per_mm: mean(self.sigma_s_reduced_per_mm, other.sigma_s_reduced_per_mm),
+            refractive_index: mean(self.refractive_index, other.refractive_index),
+        }
+    }
+
     /// Reduced extinction sigma_t' = sigma_a + sigma_s', 1/mm.
     pub fn sigma_t_reduced_per_mm(&self) -> f64 {
         self.sigma_a_per_mm + self.sigma_s_reduced_per_mm

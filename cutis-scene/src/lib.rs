@@ -38,7 +38,7 @@ pub use charts::Charts;
 pub use environment::Environment;
 pub use error::SceneError;
 pub use light::{Light, LightSample};
-pub use material::{ColourMap, Material, NormalMap, NormalSpace, ScalarMap, Scattering};
+pub use material::{ColourMap, Material, NormalMap, NormalSpace, ScalarMap, Scattering, SecondMedium};
 pub use mesh::{Mesh, MorphTarget};
 pub use object::{Object, SurfacePoint};
 pub use pose::{MeshPose, Pose, PoseError, Wave};

@@ -4,7 +4,7 @@
 //! is taken, so that an intensity of 1 gives an irradiance of 1 at one metre.
 
 use crate::Projector;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// A light and its place in the scene. Colours are linear Rec. 709.
 #[derive(Debug, Clone)]
@@ -58,6 +58,19 @@ pub struct LightSample {
 }
 
 impl Light {
+    /// The same light some seconds later: images of projectors may move.
+    pub fn after(&self, time_s: f32) -> Self {
+        match self {
+            Light::Projector(projector) => Light::Projector(projector.after(time_s)),
+            light => light.clone(),
+        }
+    }
+
+    /// Whether it changes with time.
+    pub fn moves(&self) -> bool {
+        matches!(self, Light::Projector(projector) if projector.drift_per_s != Vec2::ZERO)
+    }
+
     /// The light's centre as seen from `point_mm`.
     pub fn sample(&self, point_mm: Vec3) -> LightSample {
         match *self {

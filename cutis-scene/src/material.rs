@@ -56,6 +56,15 @@ pub struct NormalMap {
     pub strength: f32,
 }
 
+/// A second medium within the first, such as veins in marble.
+#[derive(Debug, Clone)]
+pub struct SecondMedium {
+    /// What it is: a medium, or a preset that is one.
+    pub scattering: Scattering,
+    /// Share of the volume that it fills, from 0 to 1, under every place of the surface.
+    pub share: ScalarMap,
+}
+
 /// Everything a technique needs to know of a surface.
 #[derive(Debug, Clone)]
 pub struct Material {
@@ -82,6 +91,9 @@ pub struct Material {
     /// filters light that gets so deep. Green 2004 (GPU Gems, section 16.4.1) leaves them to the future; of the techniques
     /// `texture-blur` knows them.
     pub under: Vec<ColourMap>,
+    /// A second medium, mixed with that of [`Material::scattering`] by a map (Mertens et al. 2003 vary the medium from pixel
+    /// to pixel). Of the techniques `image-space` knows it.
+    pub mixed_with: Option<SecondMedium>,
 }
 
 impl Default for Material {
@@ -98,6 +110,7 @@ impl Default for Material {
             f0: 0.028,
             thickness_scale: 1.0,
             under: Vec::new(),
+            mixed_with: None,
         }
     }
 }
@@ -130,7 +143,19 @@ impl Material {
     pub fn largest_map(&self) -> u32 {
         let maps = self.maps().into_iter().filter_map(|(_, map)| map);
         let maps = maps.chain(self.under.iter().filter_map(|layer| layer.texture.as_ref()));
+        let share = self.mixed_with.as_ref().and_then(|second| second.share.texture.as_ref());
+        let maps = maps.chain(share.map(|(map, _)| map));
         maps.map(|map| map.width().max(map.height())).max().unwrap_or(0)
+    }
+
+    /// Makes it of another tissue alone.
+    pub fn replace_tissue(&mut self, scattering: Scattering) {
+        (self.scattering, self.mixed_with) = (scattering, None);
+    }
+
+    /// Share of the volume under a place that the second medium fills, 0 to 1; 0 without one.
+    pub fn share_at(&self, uv: Vec2) -> f32 {
+        self.mixed_with.as_ref().map_or(0.0, |second| second.share.at(uv).clamp(0.0, 1.0))
     }
 
     /// What the absorbing film leaves of light that falls in: `albedo^albedo_mix`.

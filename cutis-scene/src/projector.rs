@@ -20,6 +20,11 @@ pub struct Projector {
     pub intensity_w_per_sr: Vec3,
     /// Radius of the lens, mm: shadows get soft, the image does not.
     pub radius_mm: f32,
+    /// How far the image has moved to the right and up within its frame, in parts of its width and height: what leaves on one
+    /// side comes in on the other.
+    pub shift: Vec2,
+    /// How fast it moves, the same parts per second.
+    pub drift_per_s: Vec2,
 }
 
 impl Projector {
@@ -42,7 +47,14 @@ impl Projector {
         }
         // Textures repeat: the outermost half texel is held instead.
         let uv = (0.5 + 0.5 * place).clamp(0.5 / size, 1.0 - 0.5 / size);
-        self.image.sample(uv).truncate()
+        self.image.sample(uv + Vec2::new(-self.shift.x, self.shift.y)).truncate()
+    }
+
+    /// The same projector some seconds later.
+    pub fn after(&self, time_s: f32) -> Self {
+        // Whole frames change nothing, and cost digits.
+        let moved = self.shift + self.drift_per_s * time_s;
+        Self { shift: if time_s == 0.0 { self.shift } else { moved.fract_gl() }, ..self.clone() }
     }
 }
 
@@ -56,6 +68,8 @@ impl fmt::Debug for Projector {
             .field("image", &[self.image.width(), self.image.height()])
             .field("intensity_w_per_sr", &self.intensity_w_per_sr)
             .field("radius_mm", &self.radius_mm)
+            .field("shift", &self.shift)
+            .field("drift_per_s", &self.drift_per_s)
             .finish()
     }
 }
@@ -76,6 +90,8 @@ mod tests {
             image: Arc::new(Texture::new(4, 2, Texels::LinearF32(texels))),
             intensity_w_per_sr: Vec3::splat(2.0),
             radius_mm: 0.0,
+            shift: Vec2::ZERO,
+            drift_per_s: Vec2::ZERO,
         }
     }
 
@@ -94,6 +110,27 @@ mod tests {
         }
         assert!(irradiance(199.0, 99.0).min_element() > 0.0 && irradiance(-199.0, 99.0).y == 0.0);
         assert_eq!(light.sample(Vec3::Z * 2000.0).irradiance_w_per_m2, Vec3::ZERO, "behind the lens");
+    }
+
+    /// A quarter of the width a second to the right and half the height up: colours follow each other, and what left comes in on
+    /// the other side.
+    #[test]
+    fn the_image_moves_within_its_frame() {
+        let moving = Projector { drift_per_s: Vec2::new(0.25, 0.5), ..slide() };
+        let colours = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::ONE];
+        for (second, above) in [(0, true), (1, false), (2, true), (7, false), (4001, false)] {
+            let light = Light::Projector(moving.after(second as f32));
+            for (i, x) in [-150.0, -50.0, 50.0, 150.0].into_iter().enumerate() {
+                let at = |y: f32| light.sample(Vec3::new(x, y, 0.0)).irradiance_w_per_m2;
+                let distance2_m2 = 1.0 + (x * x + 2500.0) * 1e-6;
+                let expected = colours[(i + 4004 - second) % 4] * 2.0 / distance2_m2;
+                let [lit, dark] = if above { [50.0, -50.0] } else { [-50.0, 50.0] }.map(at);
+                assert!((lit - expected).length() < 1e-4, "{second} s, {x} mm: {lit}, {expected}");
+                assert!(dark.length() < 1e-4, "{second} s: {dark}");
+            }
+        }
+        let beside = Light::Projector(moving.after(1.0)).sample(Vec3::new(201.0, 50.0, 0.0));
+        assert_eq!(beside.irradiance_w_per_m2, Vec3::ZERO, "the frame stays where it is");
     }
 
     #[test]

@@ -109,6 +109,43 @@ fn scene_files() {
             scene(&format!("[material]\nunder = [{}]", "{ colour = [1, 1, 1] }, ".repeat(9))),
             "has 9 layers under the surface; at most 8",
         ),
+        (
+            "one-shift",
+            light(&slide("path = \"missing.png\"\nshift = [1]")),
+            "must be a list of two numbers, found 1",
+        ),
+        ("far-shift", light(&slide("path = \"missing.png\"\nshift = [0, 1.5]")), "must be -1 to 1, got 1.5"),
+        (
+            "quick-drift",
+            light(&slide("path = \"missing.png\"\ndrift_per_s = [0, nan]")),
+            "must be a finite number",
+        ),
+        ("mixture", scene("[material]\nmixed_with = \"marble\""), "must be a table"),
+        (
+            "nothing-mixed",
+            scene("[material]\nmixed_with = { share = 0.5 }"),
+            "`material.mixed_with.medium`: is missing",
+        ),
+        (
+            "no-share",
+            scene("[material]\nmixed_with = { preset = \"marble\" }"),
+            "`material.mixed_with.share`: is missing",
+        ),
+        (
+            "all-of-it",
+            scene("[material]\nmixed_with = { preset = \"marble\", share = 1.5 }"),
+            "must be 0 to 1, got 1.5",
+        ),
+        (
+            "mixed-kernel",
+            scene("[material]\nmixed_with = { preset = \"three-layer-skin\", share = 0.5 }"),
+            "`three-layer-skin` is a kernel; only media can be mixed",
+        ),
+        (
+            "own-kernel",
+            scene("[material]\nmixed_with = { kernel = { variances_mm2 = [1], weights = [[1, 1, 1]] }, share = 0 }"),
+            "is not known",
+        ),
         ("space", scene("[material]\nnormal_space = \"world\""), "`world` is not known"),
         ("lonely", scene("[material]\nnormal_strength = 2"), "has no `normal` to apply to"),
         (

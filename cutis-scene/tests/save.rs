@@ -9,8 +9,8 @@ use cutis_scene::head::{HeadDetail, built_in};
 use cutis_scene::studio::{STUDIO_BACKGROUND, studio_environment, studio_lights};
 use cutis_scene::{
     Camera, ColourMap, ColourSpace, Environment, Light, Material, NormalMap, NormalSpace, Object, Pose,
-    Projector, ReadOptions, ScalarMap, Scattering, Scene, Texels, Texture, Wave, read_image, read_scene,
-    write_scene,
+    Projector, ReadOptions, ScalarMap, Scattering, Scene, SecondMedium, Texels, Texture, Wave, read_image,
+    read_scene, write_scene,
 };
 use glam::{Vec2, Vec3};
 use proptest::prelude::*;
@@ -60,14 +60,16 @@ fn assert_same_material(a: &Material, b: &Material) {
             f0,
             thickness_scale,
             under,
+            mixed_with,
         } = m;
         let scalar = |map: &ScalarMap| match &map.texture {
             Some((_, channel)) => format!("{} {} {channel}", map.offset, map.gain),
             None => format!("{}", map.offset),
         };
         let relief = normal.as_ref().map(|map| (map.space, map.strength));
+        let second = mixed_with.as_ref().map(|m| format!("{:?} {}", m.scattering, scalar(&m.share)));
         format!(
-            "{name} {scattering:?} {} {albedo_mix} {relief:?} {} {} {f0} {thickness_scale} {:?}",
+            "{name} {scattering:?} {} {albedo_mix} {relief:?} {} {} {f0} {thickness_scale} {:?} {second:?}",
             albedo.factor,
             scalar(rho_s),
             scalar(roughness),
@@ -78,6 +80,9 @@ fn assert_same_material(a: &Material, b: &Material) {
     for ((place, a), (_, b)) in a.maps().into_iter().zip(b.maps()) {
         assert_same_map(a, b, place);
     }
+    let share =
+        |m: &Material| Some(m.mixed_with.as_ref()?.share.texture.as_ref()?.0.clone());
+    assert_same_map(share(a).as_ref(), share(b).as_ref(), "share");
     for (a, b) in a.under.iter().zip(&b.under) {
         assert_same_map(a.texture.as_ref(), b.texture.as_ref(), "under");
     }
@@ -92,7 +97,9 @@ fn assert_same_light(a: &Light, b: &Light) {
     for (a, b) in a.axes.iter().zip(b.axes) {
         assert!((*a - b).length() < 8.0 * f32::EPSILON, "{a} {b}");
     }
-    let rest = |p: &Projector| (p.position_mm, p.tan_half_height, p.intensity_w_per_sr, p.radius_mm);
+    let rest = |p: &Projector| {
+        (p.position_mm, p.tan_half_height, p.intensity_w_per_sr, p.radius_mm, p.shift, p.drift_per_s)
+    };
     assert_eq!(rest(a), rest(b));
     assert_same_image(&a.image, &b.image, "projector");
 }
@@ -252,6 +259,8 @@ fn images_made_by_code_become_files() {
         ColourMap { factor: Vec3::new(1.0, 0.5, 0.25), texture: Some(veins) },
     ];
     material.rho_s = ScalarMap { offset: 0.25, gain: 0.5, texture: Some((data.clone(), 2)) };
+    let share = ScalarMap { offset: 1.0, gain: -1.0, texture: Some((data.clone(), 1)) };
+    material.mixed_with = Some(SecondMedium { scattering: Scattering::Preset("marble".to_owned()), share });
     material.roughness = ScalarMap { offset: 0.1, gain: 0.3, texture: Some((data, 1)) };
     let map = texture(Texels::LinearF32(vec![[0.1, 20.0, 3.0, 1.0], [0.0, 0.5, 1e-3, 1.0]]));
     scene.environment = Some(Environment {
@@ -315,21 +324,29 @@ fn vectors(limits: std::ops::Range<f32>) -> impl Strategy<Value = Vec3> {
     prop::array::uniform3(limits).prop_map(Vec3::from_array)
 }
 
+fn pairs() -> impl Strategy<Value = Vec2> {
+    prop::array::uniform2(-1.0..1.0f32).prop_map(Vec2::from_array)
+}
+
 fn directions() -> impl Strategy<Value = Vec3> {
     vectors(-1.0..1.0).prop_filter_map("has a direction", |v| v.try_normalize())
 }
 
-fn scatterings() -> impl Strategy<Value = Scattering> {
+fn media() -> impl Strategy<Value = Scattering> {
     let medium = (0.0..10.0f64, 1e-3..100.0f64, 1.0..2.0f64).prop_map(|(a, s, n)| Medium {
         sigma_a_per_mm: a,
         sigma_s_reduced_per_mm: s,
         refractive_index: n,
     });
+    prop::array::uniform3(medium).prop_map(Scattering::Medium)
+}
+
+fn scatterings() -> impl Strategy<Value = Scattering> {
     let rows = prop::collection::vec((1e-6..10.0f64, prop::array::uniform3(-0.5..1.0f64)), 1..7);
     prop_oneof![
         prop::sample::select(vec!["three-layer-skin", "skin1", "ketchup"])
             .prop_map(|name| Scattering::Preset(name.to_owned())),
-        prop::array::uniform3(medium).prop_map(Scattering::Medium),
+        media(),
         rows.prop_map(|rows| Scattering::Kernel(RgbGaussianSum::from_rows(rows))),
     ]
 }
@@ -337,9 +354,10 @@ fn scatterings() -> impl Strategy<Value = Scattering> {
 fn materials() -> impl Strategy<Value = Material> {
     let shares = prop::array::uniform3(0.0..1.0f32);
     let layers = prop::collection::vec(vectors(0.0..1.0), 0..3);
-    let numbers = (scatterings(), vectors(0.0..1.0), shares, 0.0..10.0f32, 0.0..1e6f32, layers);
-    numbers.prop_map(|(scattering, albedo, [albedo_mix, roughness, f0], rho_s, thickness_scale, under)| {
-        Material {
+    let second = prop::option::of((media(), 0.0..1.0f32));
+    let numbers = (scatterings(), vectors(0.0..1.0), shares, 0.0..10.0f32, 0.0..1e6f32, (layers, second));
+    numbers.prop_map(
+        |(scattering, albedo, [albedo_mix, roughness, f0], rho_s, thickness_scale, (under, second))| Material {
             scattering,
             albedo: ColourMap { factor: albedo, texture: None },
             albedo_mix,
@@ -348,9 +366,13 @@ fn materials() -> impl Strategy<Value = Material> {
             f0,
             thickness_scale,
             under: under.into_iter().map(|factor| ColourMap { factor, texture: None }).collect(),
+            mixed_with: second.map(|(scattering, share)| SecondMedium {
+                scattering,
+                share: ScalarMap::constant(share),
+            }),
             ..Material::default()
-        }
-    })
+        },
+    )
 }
 
 fn lights() -> impl Strategy<Value = Light> {
@@ -375,8 +397,9 @@ fn lights() -> impl Strategy<Value = Light> {
                 }
             }
         ),
-        (places(), directions(), directions(), strengths(), 0.01..10.0f32, 0.0..1e4f32).prop_map(
-            |(position_mm, dir, up, intensity_w_per_sr, tan_half_height, radius_mm)| {
+        (places(), directions(), directions(), strengths(), 0.01..10.0f32, 0.0..1e4f32, (pairs(), pairs()))
+            .prop_map(|(position_mm, dir, up, intensity_w_per_sr, tan_half_height, radius_mm, moved)| {
+                let (shift, drift_per_s) = moved;
                 let image = Arc::new(Texture::new(1, 1, Texels::Srgb8(vec![[10, 20, 30, 255]])));
                 let axes = Projector::axes(dir, up);
                 Light::Projector(Projector {
@@ -386,9 +409,10 @@ fn lights() -> impl Strategy<Value = Light> {
                     image,
                     intensity_w_per_sr,
                     radius_mm,
+                    shift,
+                    drift_per_s,
                 })
-            }
-        ),
+            }),
     ]
 }
 

@@ -55,6 +55,7 @@ fn material_keys_arrive() {
          normal = \"map.png\"\nnormal_space = \"object\"\nnormal_strength = 0.5\nf0 = 0.04\nroughness = 0.4\n\
          thickness_scale = 2.5\n\
          under = [{{ colour = [1, 0.5, 0.25] }}, {{ path = \"map.png\", colour = [0.5, 1, 1] }}]\n\
+         mixed_with = {{ preset = \"ketchup\", share = {{ path = \"map.png\", channel = \"red\", gain = 2 }} }}\n\
          specular = {{ path = \"map.png\", channel = \"green\", offset = 0.1, gain = 2 }}\n"
     );
     let material = scene_in(folder.path(), &text).objects.remove(0).material;
@@ -62,11 +63,15 @@ fn material_keys_arrive() {
     assert_eq!(medium[1].sigma_a_per_mm, 0.17);
     assert_eq!((medium[2].sigma_s_reduced_per_mm, medium[0].refractive_index), (1.01, 1.3));
     assert_eq!((material.albedo.factor, material.albedo_mix), (Vec3::new(0.5, 1.0, 1.0), 1.0));
-    let normal = material.normal.unwrap();
+    let normal = material.normal.as_ref().unwrap();
     assert_eq!((normal.space, normal.strength), (NormalSpace::Object, 0.5));
     assert!((material.rho_s.at(Vec2::ZERO) - (0.1 + 200.0 / 255.0)).abs() < 1e-6);
     assert_eq!((material.roughness.at(Vec2::ZERO), material.f0), (0.4, 0.04));
     assert_eq!(material.thickness_scale, 2.5);
+    assert_eq!(material.share_at(Vec2::ZERO), 1.0, "no share is above 1");
+    let second = material.mixed_with.as_ref().unwrap();
+    assert!((second.share.at(Vec2::ZERO) - 400.0 / 255.0).abs() < 1e-6);
+    assert!(matches!(&second.scattering, Scattering::Preset(name) if name == "ketchup"));
     let [near, deep] = &material.under[..] else { panic!("two layers") };
     assert_eq!(near.at(Vec2::ZERO), Vec3::new(1.0, 0.5, 0.25));
     assert_eq!(deep.at(Vec2::ZERO), material.albedo.at(Vec2::ZERO), "the same map, the same colour");
@@ -81,7 +86,8 @@ fn light_keys_arrive() {
          inner_cone_degrees = 10\nouter_cone_degrees = 20\n[[light]]\nkind = \"directional\"\n\
          direction = [0, -2, 0]\nangular_radius_degrees = 0.5\n[[light]]\nkind = \"projector\"\n\
          path = \"map.png\"\nposition_mm = [0, 0, 9]\ndirection = [0, 0, -5]\nup = [0, -1, 0]\n\
-         vertical_fov_degrees = 90\nintensity = 3\nradius_mm = 2\n[[light]]\nkind = \"environment\"\nvisible = true\n\
+         vertical_fov_degrees = 90\nintensity = 3\nradius_mm = 2\n\
+         shift = [0.25, -0.5]\ndrift_per_s = [0, 2]\n[[light]]\nkind = \"environment\"\nvisible = true\n\
          rotation_degrees = 180\nintensity = 0.5\n"
     );
     let scene = scene_in(folder.path(), &text);
@@ -99,6 +105,7 @@ fn light_keys_arrive() {
         (projector.position_mm.z, projector.intensity_w_per_sr.x, projector.radius_mm),
         (9.0, 3.0, 2.0)
     );
+    assert_eq!((projector.shift, projector.drift_per_s), (Vec2::new(0.25, -0.5), Vec2::new(0.0, 2.0)));
     let environment = scene.environment.unwrap();
     assert!(environment.visible && (environment.rotation_rad - std::f32::consts::PI).abs() < 1e-6);
     assert_eq!(environment.radiance_scale, Vec3::splat(0.5));

@@ -166,6 +166,9 @@ pub struct RenderArgs {
     /// stays, so that light goes farther through a smaller head [mm, above 0, default: as long as it is]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub longest_side: Option<f32>,
+    /// How long light that moves has moved: images of projectors with a drift [s, 0 to 100000, default 0]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub time: Option<f32>,
     /// Material of all objects, by the name of a preset, instead of their own scattering
     #[arg(long, value_name = "NAME", value_parser = names(presets::all().iter().map(|preset| preset.name)))]
     pub material: Option<String>,

@@ -151,6 +151,10 @@ fn source(args: &RenderArgs, paper: Option<Paper>) -> Result<SceneSource> {
             return Err(miette!("{flag} must be above 0 mm, got {mm}"));
         }
     }
+    let time_s = args.time.unwrap_or(0.0);
+    if !(0.0..=1e5).contains(&time_s) {
+        return Err(miette!("--time must be 0 to 100000 s, got {time_s}"));
+    }
     let stage = paper.and_then(Paper::stage);
     // Who says how long a unit is knows how large the head is.
     let of_paper = stage.filter(|_| millimetres.is_none()).map(|stage| stage.longest_side_mm);
@@ -171,6 +175,7 @@ fn source(args: &RenderArgs, paper: Option<Paper>) -> Result<SceneSource> {
         detail,
         material: args.material.clone().or_else(|| stage.map(|stage| stage.material.to_owned())),
         longest_side_mm: args.longest_side.or(of_paper),
+        time_s,
     })
 }
 

@@ -27,6 +27,8 @@ pub struct Report {
     material: Option<String>,
     /// Length to which the scene was scaled.
     longest_side_mm: Option<f32>,
+    /// How long moving light has moved.
+    time_s: f32,
     samples_per_pixel: u32,
     seed: u64,
     passes: Vec<Pass>,
@@ -78,6 +80,7 @@ impl Report {
             height: settings.height,
             material: job.source.material.clone(),
             longest_side_mm: job.source.longest_side_mm,
+            time_s: job.source.time_s,
             samples_per_pixel: settings.samples_per_pixel,
             seed: settings.seed,
             passes: passes.iter().map(Pass::new).collect(),

@@ -31,6 +31,8 @@ pub struct SceneSource {
     pub material: Option<String>,
     /// Longest side of the box around the scene, mm, to which all of it is scaled.
     pub longest_side_mm: Option<f32>,
+    /// How long moving light has moved, s.
+    pub time_s: f32,
 }
 
 impl SceneSource {
@@ -50,7 +52,7 @@ impl SceneSource {
         }
         if let Some(material) = &self.material {
             let scattering = Scattering::Preset(material.clone());
-            scene.objects.iter_mut().for_each(|object| object.material.scattering = scattering.clone());
+            scene.objects.iter_mut().for_each(|object| object.material.replace_tissue(scattering.clone()));
         }
         // A scene of one point has no size that could be scaled.
         if let Some((wanted_mm, now_mm)) = self.longest_side_mm.zip(scene.longest_side_mm())
@@ -58,6 +60,7 @@ impl SceneSource {
         {
             scene.scale(wanted_mm / now_mm);
         }
+        scene.lights.iter_mut().for_each(|light| *light = light.after(self.time_s));
         Ok(scene)
     }
 

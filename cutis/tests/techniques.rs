@@ -74,6 +74,8 @@ fn every_flag_out_of_its_range_is_refused_by_its_name() {
         (&["--as-in", "nobody-1999"], "green-2004, mertens-2003"),
         (&["--as-in", "green-2004"], "--technique wrap, depth-absorption, texture-blur"),
         (&["--longest-side", "0"], "--longest-side must be above 0 mm, got 0"),
+        (&["--time", "-1"], "--time must be 0 to 100000 s, got -1"),
+        (&["--time", "inf"], "--time must be 0 to 100000 s, got inf"),
         (&["--longest-side", "NaN"], "--longest-side must be above 0 mm, got NaN"),
         (&["--material", "jade"], "skin1"),
     ];

@@ -37,6 +37,10 @@ struct Light {
     slide_right: vec3f,
     /// Tangent of half its vertical angle.
     tan_half_height: f32,
+    /// How far it has moved to the right and up, in parts of its size.
+    slide_shift: vec2f,
+    pad0: f32,
+    pad1: f32,
 }
 
 /// Images of all projectors, linear: red and green in x, blue and the exponent of all three in y. All passes bind it here.
@@ -98,11 +102,12 @@ fn slide_filter(l: u32, dir_travel: vec3f) -> vec3f {
     if z <= 0.0 || max(abs(place.x), abs(place.y)) > 1.0 {
         return vec3f(0.0);
     }
-    // The outermost half texel is held.
-    let p = clamp((0.5 + 0.5 * place) * size - 0.5, vec2f(0.0), size - 1.0);
-    let first = vec2u(p);
-    let last = min(first + 1u, vec2u(size) - 1u);
+    // The outermost half texel is held; what has left on one side comes in on the other.
+    let held = clamp((0.5 + 0.5 * place) * size - 0.5, vec2f(0.0), size - 1.0);
+    let p = held + vec2f(-lights[l].slide_shift.x, lights[l].slide_shift.y) * size;
     let f = p - floor(p);
+    let first = vec2u(floor(p) - floor(floor(p) / size) * size);
+    let last = (first + 1u) % vec2u(size);
     let upper = mix(slide_texel(l, first.x, first.y), slide_texel(l, last.x, first.y), f.x);
     let lower = mix(slide_texel(l, first.x, last.y), slide_texel(l, last.x, last.y), f.x);
     return mix(upper, lower, f.y);

@@ -13,10 +13,9 @@ struct Material {
     /// The same for the roughness.
     roughness: vec3f,
     relief_strength: f32,
+    /// The same for the share of the second medium.
+    share: vec3f,
     relief_space: u32,
-    pad0: u32,
-    pad1: u32,
-    pad2: u32,
 }
 
 /// The absorbing film, passed once with this exponent.

@@ -12,7 +12,7 @@ use wgpu::TextureFormat as Format;
 /// Images of one size, one layer each.
 #[derive(Debug)]
 pub struct IrradianceImages {
-    /// Place and normal of what is seen.
+    /// Place, normal and mixture of what is seen.
     pub places: Map,
     /// Irradiance, and which object is seen.
     pub light: Map,
@@ -97,7 +97,7 @@ fn draw(
 ) -> Step {
     let numbers = gpu.uniform("drawn", &drawn);
     let mut bound = inputs.lit_surface();
-    bound.extend([(32, Bound::Texture(inputs.environment.irradiance.view())), (40, Bound::Buffer(&numbers))]);
+    bound.extend([(32, Bound::Texture(inputs.environment.irradiance.view())), (40, Bound::Buffer(&numbers)), (41, Bound::Texture(inputs.material.share.view()))]);
     bound.extend_from_slice(more);
     Step::Draw(Draw {
         pipeline: pipeline.clone(),

@@ -2,10 +2,12 @@
 // pass `irradiance_image`; it has the bindings of the final pass.
 
 @group(0) @binding(40) var<uniform> drawn: Drawn;
+@group(0) @binding(41) var share_map: texture_2d<f32>;
 @group(0) @binding(32) var irradiance_map: texture_2d<f32>;
 
 struct Image {
-    /// Place in xyz, mm, and a normal, packed, in w: that of the triangle, or of the smooth surface.
+    /// Place in xyz, mm; in w, packed, a normal, that of the triangle or of the smooth surface, and the share of the second
+    /// medium.
     @location(0) place: vec4u,
     /// Irradiance, W/m², and the number of the object and one in w.
     @location(1) light: vec4f,
@@ -25,7 +27,9 @@ fn light_image(seen: Seen) -> Image {
     let smooth_normal = unit_or(seen.normal, vec3f(0.0, 1.0, 0.0));
     let across = cross(dpdx(seen.position_mm), dpdy(seen.position_mm));
     let flat_normal = unit_or(across * select(-1.0, 1.0, dot(across, smooth_normal) > 0.0), smooth_normal);
-    let place = vec4u(bitcast<vec3u>(seen.position_mm), pack_unit(select(flat_normal, smooth_normal, drawn.smooth_plane != 0u)));
+    let normal = select(flat_normal, smooth_normal, drawn.smooth_plane != 0u);
+    let share = clamp(scalar_at(material.share, textureSampleLevel(share_map, repeating, seen.uv, 0.0)), 0.0, 1.0);
+    let place = vec4u(bitcast<vec3u>(seen.position_mm), pack_unit_and_share(normal, share));
     return Image(place, vec4f(irradiance_at(seen, smooth_normal), f32(drawn.object + 1u)));
 }
 

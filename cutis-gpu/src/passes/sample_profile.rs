@@ -8,6 +8,7 @@ use crate::scene::shared::Shared;
 use crate::shaders;
 use crate::step::{Draw, Step};
 use bytemuck::{Pod, Zeroable};
+use cutis_render::prepare::mixtures;
 use cutis_render::prepare::radial::RadialKernel;
 use cutis_render::technique::image_space::{MAX_LIGHT_VIEWS, SampleCount};
 use cutis_render::{RenderError, Settings};
@@ -28,9 +29,17 @@ pub struct Gathering {
     pub jacobian: u32,
     /// Whether only samples that met the body count.
     pub count_valid: u32,
+    /// Mixtures of every object's media.
+    pub mixtures: u32,
+    /// Number of the picture in a row of pictures.
+    pub round: u32,
+    /// Fills up the struct.
+    pub pad0: u32,
+    /// Fills up the struct.
+    pub pad1: u32,
 }
 
-/// One object's profile; its twin has the same name.
+/// The profile of one mixture of one object; its twin has the same name.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Radial {
@@ -106,6 +115,8 @@ impl Profiles {
             place_count: kernels.first().map_or(0, |kernel| kernel.counts.iter().sum()),
             jacobian: u32::from(image_space.jacobian),
             count_valid: u32::from(image_space.count == SampleCount::Valid),
+            mixtures: mixtures::count(scene.objects.iter().map(|object| &object.material)),
+            round: image_space.round,
             ..Gathering::zeroed()
         };
         numbers.lights[..self.lights.len()].copy_from_slice(&self.lights);
@@ -115,8 +126,12 @@ impl Profiles {
     }
 }
 
+/// Object by object, as many mixtures of each.
 fn kernels(scene: &Scene, settings: &Settings, times: u32) -> Result<Vec<RadialKernel>, RenderError> {
-    scene.objects.iter().map(|object| RadialKernel::new(&object.material, settings, times)).collect()
+    let materials = || scene.objects.iter().map(|object| &object.material);
+    let count = mixtures::count(materials());
+    let of = |material| RadialKernel::of_mixtures(material, settings, count, times);
+    Ok(materials().map(of).collect::<Result<Vec<_>, _>>()?.concat())
 }
 
 fn places(kernels: &[RadialKernel]) -> Vec<PlaceToLook> {

@@ -8,14 +8,16 @@
 @group(0) @binding(4) var light: texture_2d<f32>;
 @group(0) @binding(5) var light_places: texture_2d_array<u32>;
 @group(0) @binding(6) var light_light: texture_2d_array<f32>;
-/// R per channel in xyz at the entries, 1/mm², object by object.
+/// R per channel in xyz at the entries, 1/mm², object by object, mixture by mixture.
 @group(0) @binding(7) var<storage, read> tables: array<vec4f>;
-/// Places to look at, pixel by pixel of those that complete each other, object by object.
+/// Places to look at, pixel by pixel of those that complete each other, profile by profile.
 @group(0) @binding(8) var<storage, read> looked_at: array<PlaceToLook>;
 @group(0) @binding(9) var<storage, read> radials: array<Radial>;
 
 const ENTRIES: u32 = 1024u;
 const INTERLEAVED_PIXELS: u32 = 16u;
+/// Ranks of the pixels of an ordered dither.
+const RANKS = array<u32, 16>(0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5);
 const GRAZING: f32 = 0.02;
 const ROUNDING: f32 = 1e-6;
 const MAX_GAIN: f32 = 2.0;
@@ -33,9 +35,14 @@ struct Gathering {
     jacobian: u32,
     /// Whether only samples that met the body count.
     count_valid: u32,
+    /// Mixtures of every object's media.
+    mixtures: u32,
+    round: u32,
+    pad0: u32,
+    pad1: u32,
 }
 
-/// One object's profile.
+/// The profile of one mixture of one object.
 struct Radial {
     fine_mm: f32,
     entries_per_e: f32,
@@ -75,6 +82,8 @@ struct Texel {
     position_mm: vec3f,
     normal: vec3f,
     irradiance_w_per_m2: vec3f,
+    /// Share of the second medium.
+    share: f32,
 }
 
 struct Gathered {
@@ -90,19 +99,27 @@ fn sample_profile(@builtin(position) position: vec4f) -> Gathered {
         return Gathered(vec4f(0.0), vec4f(0.0));
     }
     let pixel = sample.x % 4u + 4u * (sample.y % 4u);
-    let first = ((own.object - 1u) * INTERLEAVED_PIXELS + pixel) * gathering.place_count;
+    let profile = (own.object - 1u) * gathering.mixtures + mixture_at(own.share, pixel);
+    let first = (profile * INTERLEAVED_PIXELS + pixel) * gathering.place_count;
     var transmitted = vec3f(0.0);
     for (var image = 0u; image < gathering.light_count; image++) {
-        transmitted += found_in_image(image, own, first);
+        transmitted += found_in_image(image, own, profile, first);
     }
-    return Gathered(vec4f(found_in_image(CAMERA, own, first), 1.0), vec4f(transmitted, 1.0));
+    return Gathered(vec4f(found_in_image(CAMERA, own, profile, first), 1.0), vec4f(transmitted, 1.0));
+}
+
+/// Which of the mixtures a pixel takes for a share of the second medium.
+fn mixture_at(share: f32, pixel: u32) -> u32 {
+    var ranks = RANKS;
+    let rank = (ranks[pixel] + gathering.round) % INTERLEAVED_PIXELS;
+    return u32(share * f32(gathering.mixtures - 1u) + (f32(rank) + 0.5) / 16.0);
 }
 
 /// In place of the number of a light's image: the camera's.
 const CAMERA: u32 = 0xffffffffu;
 
 /// Light that is found in one image around the point, W/m², of all that the images before do not show.
-fn found_in_image(image: u32, own: Texel, first: u32) -> vec3f {
+fn found_in_image(image: u32, own: Texel, profile: u32, first: u32) -> vec3f {
     let view = view_of(image);
     let axes = orthonormal_pair(own.normal);
     var sum = vec3f(0.0);
@@ -116,17 +133,17 @@ fn found_in_image(image: u32, own: Texel, first: u32) -> vec3f {
             continue;
         }
         valid++;
-        let profile = profile_at(own.object, length(offset_mm + seen.from_point_mm));
-        if all(profile == vec3f(0.0)) || shown_before(image, seen, own.object) {
+        let r = profile_at(profile, length(offset_mm + seen.from_point_mm));
+        if all(r == vec3f(0.0)) || shown_before(image, seen, own.object) {
             continue;
         }
         var area = 1.0;
         if gathering.jacobian != 0u {
             area = jacobian(view, seen.position_mm, seen.normal, plane_mm, own.normal);
         }
-        let drawn = profile_at(own.object, length(offset_mm));
+        let drawn = profile_at(profile, length(offset_mm));
         let most = select(1.0, MAX_GAIN, gathering.jacobian != 0u);
-        let found = min(profile * area, drawn * most);
+        let found = min(r * area, drawn * most);
         sum += found * seen.irradiance_w_per_m2 / place.density_per_mm2;
     }
     // Where lights look for what the camera misses, it must not be made up for: what they miss as well is dark.
@@ -152,14 +169,14 @@ fn shown_before(image: u32, seen: SeenThere, object: u32) -> bool {
 }
 
 /// R of each channel at a distance, 1/mm²; nothing beyond the table.
-fn profile_at(object: u32, r_mm: f32) -> vec3f {
-    let radial = radials[object - 1u];
+fn profile_at(profile: u32, r_mm: f32) -> vec3f {
+    let radial = radials[profile];
     let x = log(1.0 + r_mm / radial.fine_mm) * radial.entries_per_e;
     if x >= f32(ENTRIES - 1u) {
         return vec3f(0.0);
     }
     let i = u32(x);
-    let entry = (object - 1u) * ENTRIES + i;
+    let entry = profile * ENTRIES + i;
     return mix(tables[entry].xyz, tables[entry + 1u].xyz, x - f32(i));
 }
 
@@ -189,7 +206,8 @@ fn texel_at(image: u32, texel: vec2i) -> Texel {
         place = textureLoad(light_places, texel, image, 0);
         value = textureLoad(light_light, texel, image, 0);
     }
-    return Texel(u32(value.w), bitcast<vec3f>(place.xyz), unpack_unit(place.w), value.rgb);
+    let plane = unpack_unit_and_share(place.w);
+    return Texel(u32(value.w), bitcast<vec3f>(place.xyz), plane.xyz, value.rgb, plane.w);
 }
 
 /// The texel that a point falls on; none (object 0) outside of the image and where another object is seen.
@@ -200,7 +218,7 @@ fn texel_of(image: u32, view: View, point_mm: vec3f, object: u32) -> Texel {
     let size = vec2f(size_of(image));
     let place = vec2f(0.5 + 0.5 * ndc.x, 0.5 - 0.5 * ndc.y) * size;
     if depth <= 0.0 || any(place < vec2f(0.0)) || any(place >= size) {
-        return Texel(0u, vec3f(0.0), vec3f(0.0, 0.0, 1.0), vec3f(0.0));
+        return Texel(0u, vec3f(0.0), vec3f(0.0, 0.0, 1.0), vec3f(0.0), 0.0);
     }
     var texel = texel_at(image, vec2i(place));
     if texel.object != object {

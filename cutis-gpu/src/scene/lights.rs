@@ -51,6 +51,12 @@ pub struct GpuLight {
     pub slide_right: [f32; 3],
     /// Tangent of half its vertical angle.
     pub tan_half_height: f32,
+    /// How far it has moved to the right and up, in parts of its size.
+    pub slide_shift: [f32; 2],
+    /// Fills up the struct.
+    pub pad0: f32,
+    /// Fills up the struct.
+    pub pad1: f32,
 }
 
 impl GpuLight {
@@ -75,6 +81,9 @@ impl GpuLight {
         slide_width: 0,
         slide_height: 0,
         slide_right: [0.0; 3],
+        slide_shift: [0.0; 2],
+        pad0: 0.0,
+        pad1: 0.0,
         tan_half_height: 0.0,
     };
 
@@ -126,7 +135,10 @@ fn without_map(light: &Light) -> GpuLight {
             ref image,
             intensity_w_per_sr,
             radius_mm,
+            shift,
+            ..
         }) => {
+            gpu.slide_shift = shift.to_array();
             gpu.kind = 3;
             gpu.position_mm = position_mm.to_array();
             gpu.dir = along.to_array();

@@ -23,14 +23,10 @@ pub struct GpuMaterial {
     pub roughness: [f32; 3],
     /// Factor on the relief.
     pub relief_strength: f32,
+    /// Offset, gain and channel of the map of the second medium's share.
+    pub share: [f32; 3],
     /// 0 without relief, 1 in tangent space, 2 in object space.
     pub relief_space: u32,
-    /// Fills up the struct.
-    pub pad0: u32,
-    /// Fills up the struct.
-    pub pad1: u32,
-    /// Fills up the struct.
-    pub pad2: u32,
 }
 
 /// A material's numbers and maps.
@@ -48,6 +44,8 @@ pub struct MaterialMaps {
     pub rho_s: Map,
     /// Roughness.
     pub roughness: Map,
+    /// Share of the second medium.
+    pub share: Map,
 }
 
 impl MaterialMaps {
@@ -57,17 +55,18 @@ impl MaterialMaps {
     /// If a map is larger than the device takes.
     pub fn new(gpu: &Gpu, material: &Material) -> Result<Self, GpuError> {
         let texture = |label, texture: Option<&Texture>| upload(gpu, label, texture);
+        let scalar = |label, map: Option<&ScalarMap>| {
+            texture(label, map.and_then(|map| map.texture.as_ref()).map(|(map, _)| map.as_ref()))
+        };
         let relief = material.normal.as_ref();
         Ok(Self {
             numbers: gpu.uniform("material", &numbers(material)),
             thickness_scale: material.thickness_scale,
             albedo: texture("albedo", material.albedo.texture.as_deref())?,
             relief: texture("relief", relief.map(|map| map.texture.as_ref()))?,
-            rho_s: texture("rho_s", material.rho_s.texture.as_ref().map(|(map, _)| map.as_ref()))?,
-            roughness: texture(
-                "roughness",
-                material.roughness.texture.as_ref().map(|(map, _)| map.as_ref()),
-            )?,
+            rho_s: scalar("rho_s", Some(&material.rho_s))?,
+            roughness: scalar("roughness", Some(&material.roughness))?,
+            share: scalar("share", material.mixed_with.as_ref().map(|second| &second.share))?,
         })
     }
 }
@@ -85,11 +84,11 @@ pub fn numbers(material: &Material) -> GpuMaterial {
         f0: material.f0,
         roughness: scalar(&material.roughness),
         relief_strength: material.normal.as_ref().map_or(0.0, |map| map.strength),
+        share: material.mixed_with.as_ref().map_or([0.0; 3], |second| scalar(&second.share)),
         relief_space: material.normal.as_ref().map_or(0, |map| match map.space {
             NormalSpace::Tangent => 1,
             NormalSpace::Object => 2,
         }),
-        ..GpuMaterial::zeroed()
     }
 }
 

@@ -118,6 +118,9 @@ pub const SEVEN_TAPS: Tolerance = tolerance(0.0175, 0.02);
 /// A patch by samples of the profile: the processor draws a random place of each pixel, the adapter its middle.
 /// Measured 0.0108 and 0.
 pub const SAMPLED_PATCH: Tolerance = tolerance(0.015, 0.002);
+/// A patch of two media by samples: the same, so that few pixels take the mixture beside it, and shares in steps of 1/255 on the
+/// adapter. Measured 0.0125 and 0.0043.
+pub const SAMPLED_MIXTURE: Tolerance = tolerance(0.017, 0.006);
 /// The head by samples: the same, and shadows that maps tell. Measured 0.0206 and 0.0511.
 pub const SAMPLED_HEAD: Tolerance = tolerance(0.028, 0.068);
 /// Light through a plate, all of it from what the lamp sees.

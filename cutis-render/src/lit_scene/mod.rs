@@ -7,6 +7,7 @@ mod clock;
 mod kernel;
 mod object_pass;
 mod texture_layers;
+mod warnings;
 
 use crate::frame::Frame;
 use crate::passes::blur::Fields;
@@ -23,12 +24,12 @@ use crate::settings::{Aov, AovSpace, Settings, TechniqueName};
 use crate::technique::{Inside, depth_absorption, image_space, texture_blur, texture_space, wrap};
 use crate::{PassTime, Progress, RenderError};
 use clock::Clock;
-use cutis_optics::{Dipole, Medium, presets};
-use cutis_scene::{Bvh, Camera, Material, Object, Scattering, Scene};
+use cutis_scene::{Bvh, Camera, Object, Scene};
 pub use kernel::{chosen_kernel, opaque_mm};
 use object_pass::ObjectPass;
 use std::ops::Deref;
 use std::sync::Arc;
+pub use warnings::{left_out, warnings};
 
 /// Smallest irradiance texture of an object that is much smaller than the largest.
 const MIN_ATLAS: u32 = 64;
@@ -236,42 +237,4 @@ pub fn atlas_sizes(objects: &[Object], largest: u32) -> Vec<u32> {
         size
     };
     areas.iter().map(size).collect()
-}
-
-/// What a person should know of a scene that is drawn by a technique.
-pub fn warnings(scene: &Scene, technique: TechniqueName) -> Vec<String> {
-    let open = scene.objects.iter().filter(|object| !object.closed).map(|object| {
-        let name = &object.name;
-        format!("'{name}' is not a closed surface: light that enters may find no way out, and thin parts stay dark")
-    });
-    let media = scene.objects.iter().filter_map(|object| media_of(&object.material)).flatten();
-    let invalid = media.filter_map(|medium| {
-        let validity = Dipole::new(&medium).ok()?.validity();
-        (!validity.is_good()).then(|| validity.to_string())
-    });
-    open.chain(invalid).chain(layers_left_out(scene, technique)).collect()
-}
-
-/// Says so where layers under a surface are there that a technique does not know.
-pub fn layers_left_out(scene: &Scene, technique: TechniqueName) -> impl Iterator<Item = String> {
-    let knows = technique == TechniqueName::TextureBlur;
-    scene.objects.iter().filter(move |object| !knows && !object.material.under.is_empty()).map(
-        move |object| {
-            let (name, layers) = (&object.name, object.material.under.len());
-            let are = if layers == 1 { "layer lies" } else { "layers lie" };
-            format!(
-                "{layers} {are} under the surface of '{name}' that the technique {technique} does not know: \
-             texture-blur does"
-            )
-        },
-    )
-}
-
-/// The media of a material that is given by its coefficients.
-fn media_of(material: &Material) -> Option<[Medium; 3]> {
-    match &material.scattering {
-        Scattering::Medium(media) => Some(*media),
-        Scattering::Preset(name) => presets::find(name).ok()?.media().copied(),
-        Scattering::Kernel(_) => None,
-    }
 }

@@ -4,6 +4,7 @@
 pub mod colour_ramp;
 pub mod kernel;
 pub mod light_view;
+pub mod mixtures;
 pub mod prefilter;
 pub mod radial;
 pub mod rho_dt;

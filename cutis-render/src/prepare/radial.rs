@@ -7,15 +7,15 @@
 use crate::RenderError;
 use crate::prepare::Kernel;
 use crate::prepare::kernel::kernel_of;
+use crate::prepare::mixtures::{media_of, mixtures};
 use crate::settings::Settings;
 use crate::technique::image_space::{ImageSpaceProfile, ImageSpaceSettings};
-use cutis_optics::presets::PresetMaterial;
 use cutis_optics::sample::{
     DipoleSampler, DiscPattern, GaussianSampler, INTERLEAVED_PIXELS, MixtureSampler, RadialSampler,
     UniformDisc,
 };
-use cutis_optics::{Dipole, Gaussian, GaussianSum, Medium, Profile, presets};
-use cutis_scene::{Material, Scattering};
+use cutis_optics::{Dipole, Gaussian, GaussianSum, Medium, Profile};
+use cutis_scene::Material;
 use glam::{Vec2, Vec3, Vec4};
 
 /// Entries of the table.
@@ -73,6 +73,19 @@ impl RadialKernel {
         let channels = channels(material, &kernel, image_space.profile).map_err(bad)?;
         Self::of_channels(channels, kernel.total(), image_space, times)
             .ok_or_else(|| bad("its profile has no light to be sampled".to_owned()))
+    }
+
+    /// Of so many mixtures of a material's media.
+    ///
+    /// # Errors
+    /// If one has no profile that can be sampled.
+    pub fn of_mixtures(
+        material: &Material,
+        settings: &Settings,
+        count: u32,
+        times: u32,
+    ) -> Result<Vec<Self>, RenderError> {
+        mixtures(material, count)?.iter().map(|mixture| Self::new(mixture, settings, times)).collect()
     }
 
     /// Of any three profiles, scaled to the totals that are wanted. `None` if these are all 0.
@@ -153,7 +166,7 @@ impl RadialKernel {
 }
 
 fn channels(material: &Material, kernel: &Kernel, choice: ImageSpaceProfile) -> Result<[Channel; 3], String> {
-    match media_of(material).filter(|_| choice == ImageSpaceProfile::Medium) {
+    match media_of(&material.scattering).filter(|_| choice == ImageSpaceProfile::Medium) {
         Some([r, g, b]) => Ok([of_medium(&r)?, of_medium(&g)?, of_medium(&b)?]),
         None => Ok([of_kernel(kernel, 0)?, of_kernel(kernel, 1)?, of_kernel(kernel, 2)?]),
     }
@@ -179,15 +192,4 @@ fn of_kernel(kernel: &Kernel, channel: usize) -> Result<Channel, String> {
     }
     let sampler = GaussianSampler::new(&sum).map_err(|e| e.to_string())?;
     Ok(Channel { profile: Box::new(sum), sampler: Box::new(sampler) })
-}
-
-fn media_of(material: &Material) -> Option<[Medium; 3]> {
-    match &material.scattering {
-        Scattering::Medium(media) => Some(*media),
-        Scattering::Preset(name) => match presets::find(name).ok()?.material {
-            PresetMaterial::Media(media) => Some(media),
-            PresetMaterial::Kernel(_) => None,
-        },
-        Scattering::Kernel(_) => None,
-    }
 }

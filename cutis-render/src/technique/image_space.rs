@@ -3,6 +3,7 @@
 //!
 //! Symbols: x' a sample on the tangent plane, r' its distance from the point; p what the image shows in its place, r the true
 //! distance of p; E irradiance. The estimate of ∫ R(r) E dA is Σ R(r) E(p) |dA/dA'| / (N p(r')), r' drawn with density p.
+//! The medium may differ from pixel to pixel (see [`crate::prepare::mixtures`]).
 //! Beside the paper: samples of all channels at once, of any profile; the place of a sample lies on the plane of the texel
 //! that shows it, not at its middle. The paper combines images by the balance heuristic, which needs them to agree on what
 //! they show: maps of different grain do not, and dark stripes come of it. The first image that shows a place answers for it.
@@ -13,6 +14,7 @@ use crate::lit_scene::Lit;
 use crate::passes::irradiance_image::{IrradianceImage, View};
 use crate::passes::resolve::Place;
 use crate::prepare::LightView;
+use crate::prepare::mixtures::{self, mixture_at};
 use crate::prepare::radial::{PlaceToLook, RadialKernel};
 use crate::settings::within;
 use crate::{Progress, RenderError};
@@ -136,10 +138,19 @@ pub struct Sampled<'a> {
     kernels: Vec<Kernels>,
 }
 
-/// One object's profile, for places that are a whole pixel and for those that share it.
+/// Profiles of one object's mixtures, for places that are a whole pixel and for those that share it.
 struct Kernels {
-    whole: RadialKernel,
-    shared: RadialKernel,
+    whole: Vec<RadialKernel>,
+    shared: Vec<RadialKernel>,
+}
+
+impl Kernels {
+    /// The profile of a place.
+    fn at(&self, place: &Place, settings: &ImageSpaceSettings) -> &RadialKernel {
+        let all = if place.is_whole_pixel { &self.whole } else { &self.shared };
+        let share = place.object.material.share_at(place.point.uv);
+        &all[mixture_at(share, all.len() as u32, place.sample, settings)]
+    }
 }
 
 impl<'a> Sampled<'a> {
@@ -151,9 +162,11 @@ impl<'a> Sampled<'a> {
         let settings = lit.settings;
         let grid = settings.samples_grid();
         let kernels = |object: &Object| {
-            let whole = RadialKernel::new(&object.material, settings, 1)?;
-            let shared = RadialKernel::new(&object.material, settings, grid * grid)?;
-            Ok(Kernels { whole, shared })
+            let material = &object.material;
+            let of = |times| {
+                RadialKernel::of_mixtures(material, settings, mixtures::count([material].into_iter()), times)
+            };
+            Ok(Kernels { whole: of(1)?, shared: of(grid * grid)? })
         };
         let kernels = lit.scene.objects.iter().map(kernels).collect::<Result<_, RenderError>>()?;
         let size = [settings.width, settings.height].map(|side| (side * grid) as usize);
@@ -203,8 +216,8 @@ impl Gathering<'_> {
             let plane_mm = self.middle_mm + offset_mm;
             let Some(seen) = image.through(plane_mm, self.object) else { continue };
             valid += 1;
-            let profile = self.kernel.at_mm((offset_mm + seen.from_point_mm).length()).truncate();
-            if profile == Vec3::ZERO || before.iter().any(|image| image.shows(&seen, self.object)) {
+            let r = self.kernel.at_mm((offset_mm + seen.from_point_mm).length()).truncate();
+            if r == Vec3::ZERO || before.iter().any(|image| image.shows(&seen, self.object)) {
                 continue;
             }
             let on_body = [seen.position_mm, seen.normal];
@@ -214,7 +227,7 @@ impl Gathering<'_> {
             };
             let drawn = self.kernel.at_mm(offset_mm.length()).truncate();
             let most = if self.settings.jacobian { MAX_GAIN } else { 1.0 };
-            let found = (profile * jacobian).min(drawn * most);
+            let found = (r * jacobian).min(drawn * most);
             sum += found * seen.irradiance_w_per_m2 / place.density_per_mm2;
         }
         // Where lights look for what the camera misses, it must not be made up for: what they miss as well is dark.
@@ -225,15 +238,15 @@ impl Gathering<'_> {
 
 impl Inside for Sampled<'_> {
     fn exitance(&self, place: &Place) -> Exitance {
-        let Kernels { whole, shared } = &self.kernels[place.object_number];
-        let kernel = if place.is_whole_pixel { whole } else { shared };
+        let settings = &self.lit.settings.techniques.image_space;
+        let kernel = self.kernels[place.object_number].at(place, settings);
         let gathering = Gathering {
-            settings: &self.lit.settings.techniques.image_space,
+            settings,
             images: &self.images,
             kernel,
             object: place.object_number,
             middle_mm: place.point.position_mm,
-            normal: plane_normal(&self.lit.settings.techniques.image_space, &place.point),
+            normal: plane_normal(settings, &place.point),
         };
         let places = kernel.places_of(place.sample);
         let of_lights = (1..self.images.len()).map(|number| gathering.found_in_image(number, places));

@@ -36,7 +36,7 @@ pub struct WrapSettings {
     /// Whether a whole ball sends back no more light than a Lambertian one.
     pub energy_conserving: bool,
     /// Radius of the body, mm: with one, each channel wraps as far as the material spreads light over such a body, in place
-    /// of `wrap`.
+    /// of `wrap`, and the tint is that much narrower than the widest of them.
     pub radius_mm: Option<f32>,
     /// How the surface reflects lights.
     pub shine: WrapShine,
@@ -147,17 +147,25 @@ impl WrapSettings {
         Ok((deviation_mm / radius_mm).min(Vec3::ONE))
     }
 
+    /// Width of the tint where channels wrap so far.
+    pub fn tint_width(&self, wraps: Vec3) -> f32 {
+        if self.radius_mm.is_some() { self.scatter_width * wraps.max_element() } else { self.scatter_width }
+    }
+
     /// The function of the paper's listing: light per irradiance in rgb, the specular power in alpha, for N·L and N·H.
     pub fn light(&self, wraps: Vec3, cos_light: f32, cos_half: f32) -> Vec4 {
         let wrapped = (cos_light + wraps) / (1.0 + wraps);
         let energy = if self.energy_conserving { 1.0 / (1.0 + wraps) } else { Vec3::ONE };
-        let (width, lit) = (self.scatter_width, wrapped.max(Vec3::ZERO));
+        let (width, lit) = (self.tint_width(wraps), wrapped.max(Vec3::ZERO));
         let tint = wrapped.map(|c| smoothstep(0.0, width, c) * (1.0 - smoothstep(width, 2.0 * width, c)));
         // The listing takes a power of negative cosines, too; there is no light behind the surface.
         let power = if wrapped.max_element() > 0.0 { cos_half.max(0.0).powf(self.shininess) } else { 0.0 };
         ((lit + tint * self.scatter_colour) * energy).extend(power)
     }
 }
+
+/// Below this, nothing wraps.
+const LEAST_WRAP: f32 = 1e-6;
 
 /// Light that wraps around the bodies of a scene.
 pub struct Wrapped<'a> {
@@ -199,7 +207,7 @@ impl<'a> Wrapped<'a> {
     /// from a place above counts, more and more from where the wrap begins to matter.
     fn visible(&self, place: &Place, l: usize) -> f32 {
         let (point, light) = (&place.point, &self.lit.scene.lights[l]);
-        let wrap = self.bodies[place.object_number].wraps.max_element();
+        let wrap = self.bodies[place.object_number].wraps.max_element().max(LEAST_WRAP);
         let cos = point.normal.dot(light.sample(point.position_mm).dir_to_light);
         if cos >= wrap {
             return place.visible(l);
@@ -264,6 +272,8 @@ impl Inside for Wrapped<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use cutis_optics::Medium;
+    use cutis_scene::Scattering;
 
     /// Light of a whole ball over that of a Lambertian one: the integral over all N·L is twice the mean.
     fn of_a_ball(settings: &WrapSettings) -> Vec3 {
@@ -304,6 +314,30 @@ mod tests {
         for i in -10..=10 {
             let cos = i as f32 / 10.0;
             assert_eq!(plain.light(Vec3::ZERO, cos, 0.0).truncate(), Vec3::splat(cos.max(0.0)));
+        }
+    }
+
+    /// Wraps and tint come from the material where the body has a radius: nothing of either without a free path, and all that
+    /// a wrap may be where the free path is endless.
+    #[test]
+    fn without_a_free_path_it_is_lambert_and_an_endless_one_wraps_all_around() {
+        let of = |free_path_mm: f64| {
+            let medium = Medium::new(0.01 / free_path_mm, 1.0 / free_path_mm, 1.4).expect("is physical");
+            let material = Material { scattering: Scattering::Medium([medium; 3]), ..Material::default() };
+            let settings = WrapSettings { radius_mm: Some(80.0), ..WrapSettings::default() };
+            let wraps = settings.wraps(&material, 6).expect("has a kernel");
+            (-100..=100).map(move |i| {
+                let cos = i as f32 / 100.0;
+                (cos, settings.light(wraps, cos, 0.0).truncate())
+            })
+        };
+        for (cos, light) in of(1e-9) {
+            // The wrap is a tenth of a billionth; the tint as wide, which no cosine here falls in.
+            assert!((light - cos.max(0.0)).abs().max_element() < 1e-6, "{cos}: {light}");
+        }
+        let half = |cos: f32| (cos + 1.0) / 2.0;
+        for (cos, light) in of(1e9) {
+            assert!(light.y == half(cos) && light.z == half(cos) && light.x >= half(cos), "{cos}: {light}");
         }
     }
 

@@ -8,7 +8,7 @@ use cutis_render::passes::blur::Fields;
 use cutis_render::passes::diffusion::{Diffused, DiffusionOperator, Separable};
 use cutis_render::passes::stretch::stretch_mm_per_texel;
 use cutis_scene::validation::shapes;
-use cutis_scene::{Material, Object};
+use cutis_scene::{Material, Mesh, Object};
 use glam::Vec4;
 use std::sync::Arc;
 
@@ -65,4 +65,21 @@ pub fn expected(size: usize, lit: [usize; 2], maps: [AxisMap; 2], terms: &[(f64,
 pub fn relative_rms_power_error(got: &[f64], expected: &[f64], area: impl Fn(usize) -> f64) -> f64 {
     let sum = |f: &dyn Fn(usize) -> f64| (0..got.len()).map(|i| area(i) * f(i)).sum::<f64>();
     (sum(&|i| (got[i] - expected[i]).powi(2)) / sum(&|i| expected[i].powi(2))).sqrt()
+}
+
+/// Every triangle cut into four, without moving anything.
+pub fn split(mesh: &Mesh) -> Mesh {
+    let mut finer = Mesh::default();
+    for corners in &mesh.triangles {
+        let base = finer.positions_mm.len() as u32;
+        let [a, b, c] = corners.map(|v| v as usize);
+        for (i, j) in [(a, a), (b, b), (c, c), (a, b), (b, c), (c, a)] {
+            finer.positions_mm.push(0.5 * (mesh.positions_mm[i] + mesh.positions_mm[j]));
+            // Not made unit vectors: interpolation then gives what it gave.
+            finer.normals.push(0.5 * (mesh.normals[i] + mesh.normals[j]));
+            finer.uvs.push(0.5 * (mesh.uvs[i] + mesh.uvs[j]));
+        }
+        finer.triangles.extend([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]].map(|t| t.map(|v| base + v)));
+    }
+    finer
 }

@@ -1,6 +1,7 @@
 //! Where numbers go to their ends.
 
-use crate::scenes::{ball, draw, exitance, plain, plate, scene, settings, split, sun, white};
+use crate::common::split;
+use crate::scenes::{ball, draw, exitance, plain, plate, scene, settings, sun, white};
 use cutis_optics::RgbGaussianSum;
 use cutis_render::technique::depth_absorption::{DepthAbsorptionSettings, EntryPoint, FallOff};
 use cutis_render::{CpuRenderer, Diffusion, Renderer, Settings, Silent};

@@ -4,7 +4,7 @@ use cutis_optics::RgbGaussianSum;
 use cutis_render::technique::depth_absorption::{DepthAbsorptionSettings, EntryPoint, FallOff};
 use cutis_render::{Aov, CpuRenderer, Frame, Renderer, Settings, Silent, TechniqueName};
 use cutis_scene::validation::shapes::{capsule, cuboid};
-use cutis_scene::{Camera, Light, Material, Mesh, Object, ScalarMap, Scattering, Scene};
+use cutis_scene::{Camera, Light, Material, Object, ScalarMap, Scattering, Scene};
 use glam::Vec3;
 
 /// White through and through, without shine: what leaves is what entered and was not absorbed.
@@ -98,21 +98,4 @@ pub fn draw(scene: &Scene, depth_absorption: DepthAbsorptionSettings) -> Frame {
 /// Exitance in the middle of it, W/m².
 pub fn exitance(scene: &Scene, depth_absorption: DepthAbsorptionSettings) -> Vec3 {
     draw(scene, depth_absorption).layers[0].pixels[5].truncate()
-}
-
-/// Every triangle cut into four, without moving anything.
-pub fn split(mesh: &Mesh) -> Mesh {
-    let mut finer = Mesh::default();
-    for corners in &mesh.triangles {
-        let base = finer.positions_mm.len() as u32;
-        let [a, b, c] = corners.map(|v| v as usize);
-        for (i, j) in [(a, a), (b, b), (c, c), (a, b), (b, c), (c, a)] {
-            finer.positions_mm.push(0.5 * (mesh.positions_mm[i] + mesh.positions_mm[j]));
-            // Not made unit vectors: interpolation then gives what it gave.
-            finer.normals.push(0.5 * (mesh.normals[i] + mesh.normals[j]));
-            finer.uvs.push(0.5 * (mesh.uvs[i] + mesh.uvs[j]));
-        }
-        finer.triangles.extend([[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]].map(|t| t.map(|v| base + v)));
-    }
-    finer
 }

@@ -4,7 +4,7 @@ use super::files::Files;
 use super::text::{degrees, number, quoted, shortest, vector};
 use crate::source::TextureSource;
 use crate::{Environment, Light, Projector, SceneError, Texture};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// All lights of a scene; a scene that is meant to be dark says so.
 pub(super) fn all(
@@ -57,7 +57,7 @@ fn one(light: &Light, files: &mut Files) -> Result<String, SceneError> {
             put("radius_mm", number(*radius_mm));
         }
         Light::Projector(projector) => {
-            let Projector { position_mm, axes, tan_half_height, image, intensity_w_per_sr, radius_mm } =
+            let Projector { position_mm, axes, tan_half_height, image, intensity_w_per_sr, radius_mm, .. } =
                 projector;
             put("kind", quoted("projector"));
             put("path", quoted(&picture(image, files)?));
@@ -67,9 +67,15 @@ fn one(light: &Light, files: &mut Files) -> Result<String, SceneError> {
             put("vertical_fov_degrees", field_of_view(*tan_half_height));
             strength(*intensity_w_per_sr, &mut put);
             put("radius_mm", number(*radius_mm));
+            put("shift", pair(projector.shift));
+            put("drift_per_s", pair(projector.drift_per_s));
         }
     }
     Ok(text)
+}
+
+fn pair(v: Vec2) -> String {
+    format!("[{}, {}]", number(v.x), number(v.y))
 }
 
 fn sky(environment: &Environment, files: &mut Files) -> Result<String, SceneError> {

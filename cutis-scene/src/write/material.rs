@@ -20,15 +20,8 @@ pub(super) fn keys(
 ) -> Result<String, SceneError> {
     let mut text = String::new();
     let mut put = |key: &str, value: String| text += &format!("{key} = {value}\n");
-    match &material.scattering {
-        Scattering::Preset(name) => put("preset", quoted(name)),
-        Scattering::Medium(media) => put("medium", medium(media)),
-        Scattering::Kernel(kernel) => {
-            let weights = list(kernel.weights.iter().map(|w| list(w.map(double))));
-            let variances = list(kernel.variances_mm2.iter().copied().map(double));
-            put("kernel", format!("{{ variances_mm2 = {variances}, weights = {weights} }}"));
-        }
-    }
+    let (key, value) = scattering(&material.scattering);
+    put(key, value);
     match &material.albedo.texture {
         Some(map) => {
             put("albedo", quoted(&picture(map, source, true, files)?));
@@ -56,7 +49,25 @@ pub(super) fn keys(
         let layers = material.under.iter().map(|layer| under(layer, source, files));
         put("under", list(layers.collect::<Result<Vec<_>, _>>()?));
     }
+    if let Some(second) = &material.mixed_with {
+        let (key, value) = scattering(&second.scattering);
+        let share = scalar(&second.share, source, files)?;
+        put("mixed_with", format!("{{ {key} = {value}, share = {share} }}"));
+    }
     Ok(text)
+}
+
+/// The key that names how light spreads, and its value.
+fn scattering(scattering: &Scattering) -> (&'static str, String) {
+    match scattering {
+        Scattering::Preset(name) => ("preset", quoted(name)),
+        Scattering::Medium(media) => ("medium", medium(media)),
+        Scattering::Kernel(kernel) => {
+            let weights = list(kernel.weights.iter().map(|w| list(w.map(double))));
+            let variances = list(kernel.variances_mm2.iter().copied().map(double));
+            ("kernel", format!("{{ variances_mm2 = {variances}, weights = {weights} }}"))
+        }
+    }
 }
 
 fn under(layer: &ColourMap, source: &ObjectSource, files: &mut Files) -> Result<String, SceneError> {

@@ -12,7 +12,7 @@ use crate::scene_source::SceneSource;
 use crate::techniques::paper::Paper;
 use crate::techniques::take_own;
 use cutis_render::TechniqueName;
-use cutis_scene::Scene;
+use cutis_scene::{Light, Scene};
 use eframe::egui::{CentralPanel, Context, Event, InputState, Panel, Ui};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -46,6 +46,8 @@ pub struct Viewer {
     pub message: Option<String>,
     /// Where pictures are written.
     pub folder: PathBuf,
+    /// Whether lights that move are moving.
+    pub is_playing: bool,
     /// A turn around the scene that is being written.
     pub turntable: Option<Turntable>,
     panel: bool,
@@ -82,6 +84,7 @@ impl Viewer {
             sides: [Side::default(), Side::default()],
             folder: PathBuf::from("."),
             turntable: None,
+            is_playing: false,
             panel: true,
             hidden: false,
             help: false,
@@ -126,6 +129,7 @@ impl Viewer {
         }
         self.take_scene();
         self.turn();
+        self.play(context);
         if !context.egui_wants_keyboard_input() {
             self.take_keys(context);
         }
@@ -304,6 +308,17 @@ impl Viewer {
                 self.end_turntable();
                 self.message = Some(reason);
             }
+        }
+    }
+
+    /// Lets time go on for lights that move.
+    fn play(&mut self, context: &Context) {
+        self.is_playing &= self.turntable.is_none() && self.scene.lights.iter().any(Light::moves);
+        if self.is_playing {
+            // A window that was away for long goes on where it was.
+            let step_s = context.input(|input| input.stable_dt).min(0.1);
+            self.looks.iter_mut().for_each(|look| look.time_s += step_s);
+            context.request_repaint();
         }
     }
 

@@ -18,6 +18,8 @@ pub struct Look {
     pub camera: Camera,
     /// In which light.
     pub lights: Vec<LightLook>,
+    /// How long the lights have moved, s.
+    pub time_s: f32,
     /// In which surroundings.
     pub surroundings: Surroundings,
     /// In which pose.
@@ -129,6 +131,7 @@ impl Look {
         Self {
             camera: scene.camera,
             lights: vec![LightLook::default(); scene.lights.len()],
+            time_s: 0.0,
             surroundings: Surroundings {
                 strength: 1.0,
                 turn_degrees: 0.0,
@@ -163,7 +166,7 @@ impl Look {
         let pairs = scene.lights.iter().zip(&self.lights);
         pairs
             .filter(|(_, look)| look.on && look.strength > 0.0)
-            .map(|(light, look)| look.applied_to(light, middle_mm))
+            .map(|(light, look)| look.applied_to(&light.after(self.time_s), middle_mm))
             .collect()
     }
 
@@ -189,6 +192,7 @@ impl Look {
     /// Whether everything but camera and film is the same, so that light need not be gathered anew.
     pub fn is_lit_like(&self, other: &Self) -> bool {
         self.lights == other.lights
+            && self.time_s == other.time_s
             && self.surroundings == other.surroundings
             && self.pose == other.pose
             && self.skin == other.skin
@@ -257,10 +261,13 @@ impl SkinLook {
     /// Changes a material.
     pub fn apply_to(&self, material: &mut Material) {
         if let Some(preset) = &self.preset {
-            material.scattering = Scattering::Preset(preset.clone());
+            material.replace_tissue(Scattering::Preset(preset.clone()));
         }
         if self.free_path != [1.0; 3] {
-            material.scattering = stretched(&material.scattering, self.free_path.map(f64::from));
+            let second = material.mixed_with.as_mut().map(|second| &mut second.scattering);
+            for scattering in std::iter::once(&mut material.scattering).chain(second) {
+                *scattering = stretched(scattering, self.free_path.map(f64::from));
+            }
         }
         scale(&mut material.roughness, self.roughness);
         scale(&mut material.rho_s, self.oiliness);

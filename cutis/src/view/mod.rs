@@ -69,6 +69,7 @@ fn source(args: &ViewArgs) -> Result<SceneSource> {
         detail: HeadDetail::default(),
         material: None,
         longest_side_mm: None,
+        time_s: 0.0,
     })
 }
 

@@ -63,7 +63,7 @@ impl WrapMaps {
         let wraps = wrap.wraps(material, settings.gaussians)?;
         let numbers = Wrap {
             wraps: wraps.to_array(),
-            scatter_width: wrap.scatter_width,
+            scatter_width: wrap.tint_width(wraps),
             scatter_colour: wrap.scatter_colour.to_array(),
             shininess: wrap.shininess,
             specular_colour: wrap.specular_colour.to_array(),

@@ -102,7 +102,7 @@ fn listing(cos_light: f32, cos_half: f32) -> vec4f {
 /// Fraction of a light that is seen. Beyond the terminator the body itself would hide all of it: what hides the light from a
 /// place above counts, more and more from where the wrap begins to matter.
 fn wrapped_visible(place: Place, l: u32, towards: LightSample, texels: Around, weights: vec4f) -> f32 {
-    let widest = max(wrap.wraps.x, max(wrap.wraps.y, wrap.wraps.z));
+    let widest = max(max(wrap.wraps.x, wrap.wraps.y), max(wrap.wraps.z, LEAST_WRAP));
     let cos = dot(place.smooth_normal, towards.dir_to_light);
     let visible = visible_part(l, texels, weights);
     if cos >= widest {
@@ -112,6 +112,9 @@ fn wrapped_visible(place: Place, l: u32, towards: LightSample, texels: Around, w
     let above = visible_above(l, place.position_mm + place.smooth_normal * offset_mm);
     return mix(above, visible, max(cos / widest, 0.0));
 }
+
+/// Below this, nothing wraps.
+const LEAST_WRAP: f32 = 1e-6;
 
 /// Part of the shadow's offset at a cosine of the smooth surface: a body of radius R bulges by R cos²/2 before a place beyond
 /// its terminator.

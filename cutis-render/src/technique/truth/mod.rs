@@ -9,7 +9,7 @@ mod key;
 
 use crate::film::Checkpoint;
 use crate::frame::{Frame, PassTime};
-use crate::lit_scene::layers_left_out;
+use crate::lit_scene::left_out;
 use crate::settings::{Aov, AovSpace, Settings, TechniqueName};
 use crate::transport::path::Transport;
 use crate::{Progress, RenderError};
@@ -67,7 +67,7 @@ fn warnings(scene: &Scene) -> Vec<String> {
         let (name, scale) = (&object.name, object.material.thickness_scale);
         format!("the truth takes '{name}' as thick as it is: it does not know the thickness scale of {scale}")
     });
-    words.chain(layers_left_out(scene, TechniqueName::Truth)).collect()
+    words.chain(left_out(scene, TechniqueName::Truth)).collect()
 }
 
 /// Takes samples until there are enough, or the noise is low enough.

@@ -7,7 +7,7 @@ use crate::transport::path::Transport;
 use crate::transport::random::Random;
 use cutis_optics::simulate::{Grid, Layer, LayeredSlab, Rings, Simulation};
 use cutis_scene::{Light, Projector, Scene, Texels, Texture};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -98,6 +98,8 @@ fn light_from_a_projector_leaves_as_the_eye_sees_it() {
         image: Arc::new(image),
         intensity_w_per_sr: Vec3::new(0.03, 0.02, 0.01),
         radius_mm: 8.0,
+        shift: Vec2::new(0.2, 0.0),
+        drift_per_s: Vec2::ZERO,
     })];
     assert_lamp_as_eye("projector", &scene, 60_000, 30_000);
 }

@@ -1,7 +1,7 @@
 //! Tables of a scene file: values by key, with the line and full name of the key in every error.
 
 use crate::SceneError;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 use toml::Spanned;
@@ -240,6 +240,21 @@ impl<'a> Keys<'a> {
         let Some(vector) = self.vector(key)? else { return Ok(None) };
         vector.to_array().iter().try_for_each(|&number| self.check(key, number, &limits))?;
         Ok(Some(vector))
+    }
+
+    /// Two numbers within limits.
+    pub(super) fn pair_in(
+        &self,
+        key: &str,
+        limits: RangeInclusive<f32>,
+    ) -> Result<Option<Vec2>, SceneError> {
+        let Some(numbers) = self.doubles(key, 2)? else { return Ok(None) };
+        let [x, y] = numbers[..] else {
+            return Err(self.error(key, format!("must be a list of two numbers, found {}", numbers.len())));
+        };
+        let pair = Vec2::new(x as f32, y as f32);
+        pair.to_array().iter().try_for_each(|&number| self.check(key, number, &limits))?;
+        Ok(Some(pair))
     }
 
     /// A direction of any length but zero, as a unit vector.

@@ -5,7 +5,7 @@ use super::keys::Keys;
 use crate::read::image::ColourSpace;
 use crate::studio::studio_environment;
 use crate::{Environment, Light, Projector, SceneError, Texture};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_PI_4;
 use std::sync::Arc;
 
@@ -136,11 +136,15 @@ fn projector(keys: &Keys, context: &mut Context) -> Result<Light, SceneError> {
         "colour",
         "intensity",
         "radius_mm",
+        "shift",
+        "drift_per_s",
     ])?;
     let dir_travel = keys.required("direction", keys.direction("direction")?)?;
     let up = keys.direction("up")?.unwrap_or(Vec3::Y);
     keys.number_in("vertical_fov_degrees", 0.1..=170.0)?;
     let angle = keys.double("vertical_fov_degrees")?.unwrap_or(30.0);
+    let shift = keys.pair_in("shift", -1.0..=1.0)?.unwrap_or(Vec2::ZERO);
+    let drift_per_s = keys.pair_in("drift_per_s", -100.0..=100.0)?.unwrap_or(Vec2::ZERO);
     Ok(Light::Projector(Projector {
         position_mm: position(keys)?,
         axes: Projector::axes(dir_travel, up),
@@ -148,6 +152,8 @@ fn projector(keys: &Keys, context: &mut Context) -> Result<Light, SceneError> {
         image: image(keys, context)?,
         intensity_w_per_sr: strength(keys)?,
         radius_mm: radius(keys)?,
+        shift,
+        drift_per_s,
     }))
 }
 

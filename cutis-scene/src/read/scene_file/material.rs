@@ -4,12 +4,14 @@ use super::Context;
 use super::keys::Keys;
 use crate::read::MESH_PREFIX;
 use crate::read::image::ColourSpace;
-use crate::{ColourMap, Material, NormalMap, NormalSpace, ScalarMap, Scattering, SceneError, Texture};
+use crate::{
+    ColourMap, Material, NormalMap, NormalSpace, ScalarMap, Scattering, SceneError, SecondMedium, Texture,
+};
 use cutis_optics::{Medium, RgbGaussianSum};
 use glam::Vec3;
 use std::sync::Arc;
 
-const KNOWN: [&str; 14] = [
+const KNOWN: [&str; 15] = [
     "preset",
     "medium",
     "kernel",
@@ -24,6 +26,7 @@ const KNOWN: [&str; 14] = [
     "f0",
     "thickness_scale",
     "under",
+    "mixed_with",
 ];
 
 /// Most Gaussians of a kernel.
@@ -45,6 +48,7 @@ pub(super) struct Change {
     f0: Option<f32>,
     thickness_scale: Option<f32>,
     under: Option<Vec<ColourMap>>,
+    mixed_with: Option<SecondMedium>,
 }
 
 impl Change {
@@ -67,6 +71,9 @@ impl Change {
         set(&mut material.thickness_scale, &self.thickness_scale);
         set(&mut material.normal, &self.normal);
         set(&mut material.under, &self.under);
+        if self.mixed_with.is_some() {
+            material.mixed_with.clone_from(&self.mixed_with);
+        }
     }
 }
 
@@ -96,6 +103,7 @@ pub(super) fn read(keys: &Keys, own: &Material, context: &mut Context) -> Result
         f0: keys.number_in("f0", 0.0..=1.0)?,
         thickness_scale: keys.number_in("thickness_scale", 0.0..=MAX_THICKNESS_SCALE)?,
         under: under(keys, images)?,
+        mixed_with: mixed_with(keys, images)?,
     })
 }
 
@@ -124,6 +132,22 @@ fn layer_under(keys: &Keys, images: &mut Images) -> Result<ColourMap, SceneError
         None => None,
     };
     Ok(ColourMap { factor: colour.unwrap_or(Vec3::ONE), texture })
+}
+
+/// A medium, or a preset that is one, and the `share` that it fills: a number, a path, or `{ path, channel, offset, gain }`.
+fn mixed_with(keys: &Keys, images: &mut Images) -> Result<Option<SecondMedium>, SceneError> {
+    let Some(second) = keys.table("mixed_with")? else { return Ok(None) };
+    second.only(&["preset", "medium", "share"])?;
+    let scattering = second.required("medium", scattering(&second)?)?;
+    if let Scattering::Preset(name) = &scattering
+        // Names that nobody knows are told with those that are known, in the renderer.
+        && cutis_optics::presets::find(name).is_ok_and(|preset| preset.media().is_none())
+    {
+        return Err(second.error("preset", format!("`{name}` is a kernel; only media can be mixed")));
+    }
+    let plain = |texture| ScalarMap { offset: 0.0, gain: 1.0, texture: Some((texture, 0)) };
+    let share = second.required("share", scalar(&second, "share", 0.0..=1.0, plain, images)?)?;
+    Ok(Some(SecondMedium { scattering, share }))
 }
 
 fn scattering(keys: &Keys) -> Result<Option<Scattering>, SceneError> {

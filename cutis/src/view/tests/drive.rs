@@ -29,6 +29,7 @@ pub fn window(size: [f32; 2], backend: Backend) -> Window {
         detail: HeadDetail { triangles: 4000, map_size: 64 },
         material: None,
         longest_side_mm: None,
+        time_s: 0.0,
     };
     let scene = source.load().expect("the built-in head is valid");
     let drawing = Drawing { backend, irradiance_size: 128, ..Drawing::default() };

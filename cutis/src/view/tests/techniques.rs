@@ -185,6 +185,7 @@ fn a_head_of_10_cm_looks_like_a_mean_free_path_that_is_as_much_longer() {
     let source = SceneSource {
         material: Some(stage.material.to_owned()),
         longest_side_mm: Some(stage.longest_side_mm),
+        time_s: 0.0,
         ..viewer.source.clone()
     };
     let small = source.load().expect("is sound");

@@ -1,83 +1,12 @@
-//! Image-space sampling against closed forms: planes, shadow edges, a ball, and the ends of its numbers.
+//! Planes: even light, and the edge of a shadow.
 
-use cutis_optics::sample::{DipoleSampler, RadialSampler};
-use cutis_optics::{Dipole, Medium, Profile};
-use cutis_render::settings::TechniqueSettings;
+use crate::scenes::{draw, exitances, medium, plane, settings, sun, white};
+use cutis_optics::{Dipole, Profile};
+use cutis_render::Settings;
 use cutis_render::technique::image_space::{ImageSpaceSettings, SampleCount};
-use cutis_render::{Aov, CpuRenderer, Diffusion, Frame, Renderer, Settings, Silent, TechniqueName};
-use cutis_scene::validation::shapes;
-use cutis_scene::{
-    Camera, ColourMap, Environment, Light, Material, Object, Scattering, Scene, Texels, Texture,
-};
+use cutis_scene::{ColourMap, Material, Scattering, Scene, Texels, Texture};
 use glam::Vec3;
 use std::sync::Arc;
-
-/// White, without a surface of its own, so that what leaves is the kernel's alone.
-fn white(scattering: Scattering) -> Material {
-    Material {
-        scattering,
-        albedo: ColourMap { factor: Vec3::ONE, texture: None },
-        rho_s: cutis_scene::ScalarMap::constant(0.0),
-        ..Material::default()
-    }
-}
-
-fn medium() -> Medium {
-    Medium::new(0.05, 1.0, 1.4).expect("is physical")
-}
-
-/// A plane of 200 mm, looked at from above or aside, under light that falls straight down on `lit`.
-fn plane(material: Material, eye_mm: Vec3, light: Light) -> Scene {
-    let mesh = shapes::patch(8, 1.0 / 64.0, |u| 200.0 * u - 100.0, |v| 200.0 * v - 100.0);
-    Scene {
-        objects: vec![Object::new("plane", mesh, material)],
-        lights: vec![light],
-        environment: None,
-        camera: Camera {
-            position_mm: eye_mm,
-            look_at_mm: Vec3::ZERO,
-            up: Vec3::Y,
-            vertical_fov_rad: 0.1,
-            exposure_ev: 0.0,
-        },
-        background: None,
-        warnings: Vec::new(),
-    }
-}
-
-fn sun(irradiance: f32) -> Light {
-    Light::Directional {
-        dir_to_light: Vec3::Z,
-        irradiance_w_per_m2: Vec3::splat(irradiance),
-        angular_radius_rad: 0.0,
-    }
-}
-
-fn settings(image_space: ImageSpaceSettings) -> Settings {
-    Settings {
-        technique: TechniqueName::ImageSpace,
-        techniques: TechniqueSettings { image_space, ..TechniqueSettings::default() },
-        width: 48,
-        height: 48,
-        samples_per_pixel: 1,
-        irradiance_size: 256,
-        aovs: vec![Aov::Exitance],
-        ..Settings::default()
-    }
-}
-
-fn draw(scene: &Scene, settings: &Settings) -> Frame {
-    CpuRenderer.render(scene, settings, &Silent).expect("draws")
-}
-
-/// Exitance of all pixels.
-fn exitances(frame: &Frame) -> Vec<Vec3> {
-    frame.layers[0].pixels.iter().map(|p| p.truncate()).collect()
-}
-
-fn mean(values: &[Vec3]) -> Vec3 {
-    values.iter().copied().sum::<Vec3>() / values.len() as f32
-}
 
 /// Mean over some pixels in each of [`ROUNDS`] rounds, then their mean and its standard error: neighbours share sixteen
 /// patterns, so that only rounds are apart.
@@ -197,60 +126,4 @@ fn a_shadow_edge_has_the_profile_of_a_half_plane() {
         noise[0], noise[1], noise[2]
     );
     assert!(noise[1] < noise[0] && noise[1] < noise[2], "{noise:?}");
-}
-
-/// On a ball the area within a chord r is pi r², as on the plane: under even light the middle of its face sends back what the
-/// profile holds within the chord to its outline. Only with the right Jacobian does that come out.
-#[test]
-fn a_ball_under_even_light_sends_back_what_its_face_holds() {
-    const RADIUS_MM: f32 = 4.0;
-    let ball = Object::new(
-        "ball",
-        shapes::capsule(Vec3::ZERO, RADIUS_MM, 0.0, 256),
-        white(Scattering::Medium([medium(); 3])),
-    );
-    let mut scene = plane(white(Scattering::Medium([medium(); 3])), Vec3::Z * 1000.0, sun(0.0));
-    scene.objects = vec![ball];
-    scene.camera.vertical_fov_rad = 0.0088;
-    let sky = Texture::new(2, 1, Texels::LinearF32(vec![[1.0; 4]; 2]));
-    scene.environment = Some(Environment {
-        map: Arc::new(sky),
-        rotation_rad: 0.0,
-        radiance_scale: Vec3::ONE,
-        visible: false,
-    });
-    let dipole = Dipole::new(&medium()).expect("is physical");
-    let within = DipoleSampler::new(&dipole).cdf(RADIUS_MM * std::f32::consts::SQRT_2);
-    let expected = std::f32::consts::PI * dipole.total() as f32 * within;
-    let middle = |jacobian| {
-        let own = ImageSpaceSettings {
-            samples: 1024,
-            uniform_samples: 512,
-            jacobian,
-            count: SampleCount::All,
-            ..Default::default()
-        };
-        let frame = draw(&scene, &Settings { width: 64, height: 64, ..settings(own) });
-        let pixels = [31 * 64 + 31, 31 * 64 + 32, 32 * 64 + 31, 32 * 64 + 32];
-        pixels.map(|i| frame.layers[0].pixels[i].x).iter().sum::<f32>() / 4.0
-    };
-    let (with, without) = (middle(true), middle(false));
-    eprintln!("ball: {with}, without Jacobian {without}, expected {expected}");
-    // Six thousand places for the mean: 1 % of noise; facets of 1.4 degrees and the outline, whose area is cut at eight times.
-    assert!((with / expected - 1.0).abs() < 0.02, "{with} against {expected}");
-    assert!(without / expected < 0.93, "{without} against {expected}");
-}
-
-#[test]
-fn no_free_path_is_an_opaque_surface_and_an_endless_one_is_dark() {
-    let tiny = |l: f64| Medium::new(0.01 / l, 1.0 / l, 1.4).expect("is physical");
-    let scene = |l| plane(white(Scattering::Medium([tiny(l); 3])), Vec3::Z * 1000.0, sun(1.0));
-    let own = settings(ImageSpaceSettings::default());
-    let sampled = exitances(&draw(&scene(1e-6), &own));
-    let opaque = exitances(&draw(&scene(1e-6), &Settings { diffusion: Diffusion::None, ..own.clone() }));
-    let off = (mean(&sampled) - mean(&opaque)).abs().max_element();
-    // The opaque kernel is a fit, whose total is that of the dipole; the table holds R to 1e-4.
-    assert!(off < 2e-3 * mean(&opaque).x, "{} against {}", mean(&sampled), mean(&opaque));
-    let endless = exitances(&draw(&scene(1e9), &own));
-    assert!(endless.iter().all(|e| e.is_finite() && e.max_element() < 1e-6), "{}", mean(&endless));
 }

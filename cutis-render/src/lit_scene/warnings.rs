@@ -1,0 +1,47 @@
+//! What a person should know of a scene that is drawn by a technique.
+
+use crate::prepare::mixtures::media_of;
+use crate::settings::TechniqueName;
+use cutis_optics::Dipole;
+use cutis_scene::{Object, Scene};
+
+/// All of it, in words.
+pub fn warnings(scene: &Scene, technique: TechniqueName) -> Vec<String> {
+    let open = scene.objects.iter().filter(|object| !object.closed).map(|object| {
+        let name = &object.name;
+        format!("'{name}' is not a closed surface: light that enters may find no way out, and thin parts stay dark")
+    });
+    let media = scene.objects.iter().filter_map(|object| media_of(&object.material.scattering)).flatten();
+    let invalid = media.filter_map(|medium| {
+        let validity = Dipole::new(&medium).ok()?.validity();
+        (!validity.is_good()).then(|| validity.to_string())
+    });
+    open.chain(invalid).chain(left_out(scene, technique)).collect()
+}
+
+/// Says so where a material has what a technique does not know.
+pub fn left_out(scene: &Scene, technique: TechniqueName) -> impl Iterator<Item = String> {
+    let of = move |object: &Object| [layers_left_out(object, technique), mixture_left_out(object, technique)];
+    scene.objects.iter().flat_map(of).flatten()
+}
+
+fn layers_left_out(object: &Object, technique: TechniqueName) -> Option<String> {
+    let (name, layers) = (&object.name, object.material.under.len());
+    let are = if layers == 1 { "layer lies" } else { "layers lie" };
+    (layers > 0 && technique != TechniqueName::TextureBlur).then(|| {
+        format!(
+            "{layers} {are} under the surface of '{name}' that the technique {technique} does not know: \
+             texture-blur does"
+        )
+    })
+}
+
+fn mixture_left_out(object: &Object, technique: TechniqueName) -> Option<String> {
+    let name = &object.name;
+    let is_mixed = object.material.mixed_with.is_some() && technique != TechniqueName::ImageSpace;
+    is_mixed.then(|| {
+        format!(
+            "a second medium is mixed into '{name}' that the technique {technique} does not know: image-space does"
+        )
+    })
+}

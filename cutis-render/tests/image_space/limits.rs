@@ -1,0 +1,42 @@
+//! Ends of its numbers, and what must not change the picture.
+
+use crate::common::split;
+use crate::scenes::{ball_under_the_sky, draw, exitances, mean, plane, settings, sun, white};
+use cutis_optics::Medium;
+use cutis_render::technique::image_space::ImageSpaceSettings;
+use cutis_render::{Diffusion, Settings, TechniqueName};
+use cutis_scene::{Object, Scattering};
+use glam::Vec3;
+
+#[test]
+fn no_free_path_is_an_opaque_surface_and_an_endless_one_is_dark() {
+    let tiny = |l: f64| Medium::new(0.01 / l, 1.0 / l, 1.4).expect("is physical");
+    let scene = |l| plane(white(Scattering::Medium([tiny(l); 3])), Vec3::Z * 1000.0, sun(1.0));
+    let own = settings(ImageSpaceSettings::default());
+    let sampled = exitances(&draw(&scene(1e-6), &own));
+    let opaque = exitances(&draw(&scene(1e-6), &Settings { diffusion: Diffusion::None, ..own.clone() }));
+    let off = (mean(&sampled) - mean(&opaque)).abs().max_element();
+    // The opaque kernel is a fit, whose total is that of the dipole; the table holds R to 1e-4.
+    assert!(off < 2e-3 * mean(&opaque).x, "{} against {}", mean(&sampled), mean(&opaque));
+    let endless = exitances(&draw(&scene(1e9), &own));
+    assert!(endless.iter().all(|e| e.is_finite() && e.max_element() < 1e-6), "{}", mean(&endless));
+}
+
+/// Triangles cut into four, by image-space with planes of triangles and of the smooth surface, and by wrap.
+#[test]
+fn triangles_may_be_split() {
+    let mut whole = ball_under_the_sky(6.0, 32);
+    whole.lights = vec![sun(3.0)];
+    let mut cut = whole.clone();
+    let object = &whole.objects[0];
+    cut.objects = vec![Object::new("ball", split(&object.mesh), object.material.clone())];
+    let sampled = |jacobian| settings(ImageSpaceSettings { jacobian, ..Default::default() });
+    let wrapped = Settings { technique: TechniqueName::Wrap, ..settings(ImageSpaceSettings::default()) };
+    for (name, settings) in [("planes", sampled(true)), ("smooth", sampled(false)), ("wrap", wrapped)] {
+        let [a, b] = [&whole, &cut].map(|scene| exitances(&draw(scene, &settings)));
+        let apart = a.iter().zip(&b).map(|(a, b)| (*a - *b).abs().max_element()).sum::<f32>() / a.len() as f32;
+        let level = mean(&a).x;
+        eprintln!("{name}: {apart} apart, of {level}");
+        assert!(level > 0.1 && apart < 1e-3 * level, "{name}: {apart} of {level}");
+    }
+}

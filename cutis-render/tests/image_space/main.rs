@@ -1,0 +1,9 @@
+//! Image-space sampling against closed forms: planes, shadow edges, balls, and the ends of its numbers.
+
+mod balls;
+#[path = "../common/mod.rs"]
+mod common;
+mod limits;
+mod mixtures;
+mod planes;
+mod scenes;

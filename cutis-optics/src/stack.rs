@@ -21,6 +21,13 @@ pub struct TissueLayer {
     pub thickness_mm: f64,
 }
 
+impl TissueLayer {
+    /// The same layer in which every length, its thickness too, is `factor` times as long.
+    pub fn stretched(&self, factor: f64) -> Self {
+        Self { medium: self.medium.stretched(factor), thickness_mm: self.thickness_mm * factor }
+    }
+}
+
 /// Layers under air, from top to bottom.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stack {
@@ -121,7 +128,7 @@ impl Stack {
 
     /// Depth of the shallowest source under its layer's top, mm: the shortest transport mean free path, but of slabs thinner
     /// than theirs.
-    pub(crate) fn shortest_mean_free_path_mm(&self) -> f64 {
+    pub fn shortest_mean_free_path_mm(&self) -> f64 {
         let slabs = self.slabs.iter().map(Multipole::source_depth_mm);
         slabs.chain(self.bottom.map(|dipole| dipole.depth_real_mm())).fold(f64::INFINITY, f64::min)
     }

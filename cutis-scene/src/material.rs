@@ -1,7 +1,7 @@
 //! What a surface is made of: how it scatters, its colour, its relief and its shine.
 
 use crate::texture::Texture;
-use cutis_optics::{Medium, RgbGaussianSum};
+use cutis_optics::{Medium, RgbGaussianSum, TissueLayer};
 use glam::{Vec2, Vec3, Vec4};
 use std::sync::Arc;
 
@@ -12,6 +12,8 @@ pub enum Scattering {
     Preset(String),
     /// A homogeneous medium per channel (red, green, blue), seen through the dipole.
     Medium([Medium; 3]),
+    /// Layers of media per channel, from the top, seen through the multipole (Donner & Jensen 2005); as many in each channel.
+    Layers([Vec<TissueLayer>; 3]),
     /// A finished diffusion kernel.
     Kernel(RgbGaussianSum),
 }

@@ -18,6 +18,9 @@ fn light(lines: &str) -> String {
     scene(&format!("[[light]]\n{lines}"))
 }
 
+/// The coefficients of a layer.
+const LAYER: &str = "sigma_a_per_mm = [0.1, 0.2, 0.4], sigma_s_reduced_per_mm = [2, 2, 2], refractive_index = 1.4";
+
 #[test]
 fn scene_files() {
     let folder = tempfile::tempdir().unwrap();
@@ -108,6 +111,28 @@ fn scene_files() {
             "many-layers",
             scene(&format!("[material]\nunder = [{}]", "{ colour = [1, 1, 1] }, ".repeat(9))),
             "has 9 layers under the surface; at most 8",
+        ),
+        ("no-layers", scene("[material]\nlayers = []"), "0 of them; must be 1 to 64"),
+        ("word-layers", scene("[material]\nlayers = \"skin\""), "must be a list of tables"),
+        (
+            "endless-above",
+            scene(&format!("[material]\nlayers = [{{ {LAYER} }}, {{ {LAYER} }}]")),
+            "key `material.layers[0].thickness_mm`: is missing: only the last layer may be endless",
+        ),
+        (
+            "no-thickness",
+            scene(&format!("[material]\nlayers = [{{ {LAYER}, thickness_mm = 0 }}]")),
+            "`material.layers[0].thickness_mm`: must be above 0",
+        ),
+        (
+            "half-a-layer",
+            scene("[material]\nlayers = [{ sigma_a_per_mm = [1, 1, 1], thickness_mm = 1 }]"),
+            "`material.layers[0].sigma_s_reduced_per_mm`: is missing",
+        ),
+        (
+            "two-tissues",
+            scene(&format!("[material]\npreset = \"skin1\"\nlayers = [{{ {LAYER} }}]")),
+            "`material.layers`: stands beside `preset`",
         ),
         (
             "one-shift",

@@ -4,7 +4,7 @@
 mod common;
 
 use common::{Glb, SQUARE_OBJ, shelf, small_png, write};
-use cutis_optics::{Medium, RgbGaussianSum};
+use cutis_optics::{Medium, RgbGaussianSum, TissueLayer};
 use cutis_scene::head::{HeadDetail, built_in};
 use cutis_scene::studio::{STUDIO_BACKGROUND, studio_environment, studio_lights};
 use cutis_scene::{
@@ -341,12 +341,31 @@ fn media() -> impl Strategy<Value = Scattering> {
     prop::array::uniform3(medium).prop_map(Scattering::Medium)
 }
 
+/// Two to four layers, the last one endless or not.
+fn layers() -> impl Strategy<Value = Scattering> {
+    let layer = (0.0..10.0f64, 1e-3..100.0f64, 1.0..2.0f64, 1e-3..50.0f64);
+    let rows = prop::collection::vec((prop::array::uniform3(layer), any::<bool>()), 2..5);
+    rows.prop_map(|rows| {
+        let last = rows.len() - 1;
+        Scattering::Layers([0, 1, 2].map(|channel| {
+            let layer = |(i, (row, endless)): (usize, &([(f64, f64, f64, f64); 3], bool))| {
+                let (sigma_a_per_mm, sigma_s_reduced_per_mm, refractive_index, _) = row[channel];
+                let medium = Medium { sigma_a_per_mm, sigma_s_reduced_per_mm, refractive_index };
+                let thickness_mm = if i == last && *endless { f64::INFINITY } else { row[0].3 };
+                TissueLayer { medium, thickness_mm }
+            };
+            rows.iter().enumerate().map(layer).collect()
+        }))
+    })
+}
+
 fn scatterings() -> impl Strategy<Value = Scattering> {
     let rows = prop::collection::vec((1e-6..10.0f64, prop::array::uniform3(-0.5..1.0f64)), 1..7);
     prop_oneof![
         prop::sample::select(vec!["three-layer-skin", "skin1", "ketchup"])
             .prop_map(|name| Scattering::Preset(name.to_owned())),
         media(),
+        layers(),
         rows.prop_map(|rows| Scattering::Kernel(RgbGaussianSum::from_rows(rows))),
     ]
 }

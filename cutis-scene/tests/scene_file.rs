@@ -78,6 +78,22 @@ fn material_keys_arrive() {
 }
 
 #[test]
+fn layers_arrive() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!(
+        "{MESH}[material]\nlayers = [\n\
+         {{ sigma_a_per_mm = [0.2, 0.5, 1], sigma_s_reduced_per_mm = [4, 5, 6], thickness_mm = 0.25 }},\n\
+         {{ sigma_a_per_mm = [0.01, 0.1, 0.3], sigma_s_reduced_per_mm = [2, 2.5, 3], refractive_index = 1.38 }}]\n"
+    );
+    let material = scene_in(folder.path(), &text).objects.remove(0).material;
+    let Scattering::Layers([_, green, blue]) = &material.scattering else { panic!("layers") };
+    assert_eq!((green.len(), green[0].thickness_mm, green[1].thickness_mm), (2, 0.25, f64::INFINITY));
+    assert_eq!((blue[0].medium.sigma_s_reduced_per_mm, blue[1].medium.sigma_a_per_mm), (6.0, 0.3));
+    assert_eq!((green[0].medium.refractive_index, green[1].medium.refractive_index), (1.4, 1.38));
+    assert_eq!(material.albedo.factor, Vec3::ONE, "layers show their own colour");
+}
+
+#[test]
 fn light_keys_arrive() {
     let folder = tempfile::tempdir().unwrap();
     let text = format!(

@@ -2,7 +2,7 @@
 
 use crate::RenderError;
 use cutis_optics::presets::PresetMaterial;
-use cutis_optics::{Medium, RgbGaussianSum, presets, rgb_kernel};
+use cutis_optics::{Medium, RgbGaussianSum, Stack, TissueLayer, fit_rgb, presets, rgb_kernel};
 use cutis_scene::{Material, Scattering};
 use glam::Vec3;
 
@@ -30,11 +30,27 @@ pub fn kernel_of(material: &Material, gaussians: usize) -> Result<Kernel, Render
             preset.kernel(gaussians).map_err(|e| bad(e.to_string()))?
         }
         Scattering::Medium(media) => rgb_kernel(media, gaussians).map_err(|e| bad(e.to_string()))?,
+        Scattering::Layers(channels) => layered_kernel(channels, gaussians).map_err(bad)?,
         Scattering::Kernel(sum) => sum.clone(),
     };
     let kernel = Kernel::new(&sum).checked(&material.name)?;
     let coloured = material.albedo.texture.is_some() || material.albedo.factor != Vec3::ONE;
     Ok(if coloured { kernel.normalised_to_white() } else { kernel })
+}
+
+/// The kernel of layers, seen through the multipole.
+fn layered_kernel(channels: &[Vec<TissueLayer>; 3], gaussians: usize) -> Result<RgbGaussianSum, String> {
+    let [red, green, blue] = stacks(channels)?;
+    Ok(fit_rgb([&red, &green, &blue], gaussians).map_err(|e| e.to_string())?.kernel)
+}
+
+/// Red, green and blue of layers.
+///
+/// # Errors
+/// In words, if a layer cannot be.
+pub fn stacks(channels: &[Vec<TissueLayer>; 3]) -> Result<[Stack; 3], String> {
+    let stack = |channel: usize| Stack::in_air(&channels[channel]).map_err(|e| e.to_string());
+    Ok([stack(0)?, stack(1)?, stack(2)?])
 }
 
 /// The same scattering with free paths `factors` times as long in red, green and blue. A preset of no known name stays:
@@ -46,6 +62,9 @@ pub fn stretched(scattering: &Scattering, factors: [f64; 3]) -> Scattering {
     let kernel = |sum: &RgbGaussianSum| Scattering::Kernel(sum.widened(factors));
     match scattering {
         Scattering::Medium(m) => media(m),
+        Scattering::Layers(channels) => Scattering::Layers(std::array::from_fn(|channel| {
+            channels[channel].iter().map(|layer| layer.stretched(factors[channel])).collect()
+        })),
         Scattering::Kernel(sum) => kernel(sum),
         Scattering::Preset(name) => match presets::find(name).map(|preset| &preset.material) {
             Ok(PresetMaterial::Media(m)) => media(m),

@@ -49,7 +49,7 @@ pub fn media_of(scattering: &Scattering) -> Option<[Medium; 3]> {
     match scattering {
         Scattering::Medium(media) => Some(*media),
         Scattering::Preset(name) => presets::find(name).ok()?.media().copied(),
-        Scattering::Kernel(_) => None,
+        Scattering::Kernel(_) | Scattering::Layers(_) => None,
     }
 }
 

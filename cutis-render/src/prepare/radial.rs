@@ -6,16 +6,16 @@
 
 use crate::RenderError;
 use crate::prepare::Kernel;
-use crate::prepare::kernel::kernel_of;
+use crate::prepare::kernel::{kernel_of, stacks};
 use crate::prepare::mixtures::{media_of, mixtures};
 use crate::settings::Settings;
 use crate::technique::image_space::{ImageSpaceProfile, ImageSpaceSettings};
 use cutis_optics::sample::{
     DipoleSampler, DiscPattern, GaussianSampler, INTERLEAVED_PIXELS, MixtureSampler, RadialSampler,
-    UniformDisc,
+    TabulatedSampler, UniformDisc,
 };
-use cutis_optics::{Dipole, Gaussian, GaussianSum, Medium, Profile};
-use cutis_scene::Material;
+use cutis_optics::{Dipole, Gaussian, GaussianSum, Medium, Profile, Stack};
+use cutis_scene::{Material, Scattering};
 use glam::{Vec2, Vec3, Vec4};
 
 /// Entries of the table.
@@ -166,10 +166,23 @@ impl RadialKernel {
 }
 
 fn channels(material: &Material, kernel: &Kernel, choice: ImageSpaceProfile) -> Result<[Channel; 3], String> {
-    match media_of(&material.scattering).filter(|_| choice == ImageSpaceProfile::Medium) {
-        Some([r, g, b]) => Ok([of_medium(&r)?, of_medium(&g)?, of_medium(&b)?]),
-        None => Ok([of_kernel(kernel, 0)?, of_kernel(kernel, 1)?, of_kernel(kernel, 2)?]),
+    let of_gaussians = || Ok([of_kernel(kernel, 0)?, of_kernel(kernel, 1)?, of_kernel(kernel, 2)?]);
+    match (choice, &material.scattering, media_of(&material.scattering)) {
+        (ImageSpaceProfile::Gaussians, ..) => of_gaussians(),
+        (_, _, Some([r, g, b])) => Ok([of_medium(&r)?, of_medium(&g)?, of_medium(&b)?]),
+        (_, Scattering::Layers(layers), _) => {
+            let [r, g, b] = stacks(layers)?;
+            Ok([of_stack(r)?, of_stack(g)?, of_stack(b)?])
+        }
+        _ => of_gaussians(),
     }
+}
+
+/// Drawn from by a table, as any profile can be.
+fn of_stack(stack: Stack) -> Result<Channel, String> {
+    let mean_free_path_mm = stack.shortest_mean_free_path_mm();
+    let sampler = TabulatedSampler::new(&stack, mean_free_path_mm).map_err(|e| e.to_string())?;
+    Ok(Channel { profile: Box::new(stack), sampler: Box::new(sampler) })
 }
 
 fn of_medium(medium: &Medium) -> Result<Channel, String> {

@@ -65,7 +65,7 @@ pub enum SampleCount {
 /// What radii are drawn from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ImageSpaceProfile {
-    /// The dipole of the medium, where there is one; else the sum of Gaussians.
+    /// The dipole of the medium or the multipole of layers, where they are known; else the sum of Gaussians.
     Medium,
     /// The sum of Gaussians that `texture-space` draws with.
     Gaussians,

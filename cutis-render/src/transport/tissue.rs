@@ -1,7 +1,7 @@
 //! What a body is filled with: layers that follow its surface.
 
 use crate::RenderError;
-use cutis_optics::{Medium, presets};
+use cutis_optics::{self as optics, Medium, presets};
 use cutis_scene::{Material, Scattering};
 use glam::DVec3;
 
@@ -44,14 +44,35 @@ impl Tissue {
 
     /// One medium throughout; scattering by reduced coefficients, all directions alike.
     pub fn homogeneous(media: &[Medium; 3]) -> Self {
-        let rgb = |of: fn(&Medium) -> f64| DVec3::from_array([&media[0], &media[1], &media[2]].map(of));
-        let layer = TissueLayer {
-            thickness_mm: f64::INFINITY,
-            sigma_a_per_mm: rgb(|m| m.sigma_a_per_mm),
-            sigma_s_per_mm: rgb(|m| m.sigma_s_reduced_per_mm),
-            g: 0.0,
+        Self::new(vec![TissueLayer::isotropic(media, f64::INFINITY)], media[1].refractive_index)
+    }
+
+    /// Layers by reduced coefficients, all directions alike.
+    ///
+    /// # Errors
+    /// In words, if a layer cannot be, their indices of refraction or the thicknesses of their channels differ, or the last one
+    /// does not fill the body.
+    pub fn of_layers([red, green, blue]: &[Vec<optics::TissueLayer>; 3]) -> Result<Self, String> {
+        let rows: Vec<_> = red.iter().zip(green).zip(blue).map(|((r, g), b)| [*r, *g, *b]).collect();
+        let all = || rows.iter().flatten();
+        let Some(last) = red.last() else { return Err("it has no layer".to_owned()) };
+        for layer in all() {
+            layer.medium.validated().map_err(|e| e.to_string())?;
+        }
+        let index = last.medium.refractive_index;
+        if all().any(|layer| layer.medium.refractive_index != index) {
+            return Err("its layers have different refractive indices; a path has only one".to_owned());
+        }
+        if rows.iter().any(|row| row.iter().any(|layer| layer.thickness_mm != row[0].thickness_mm)) {
+            return Err("its layers are of another thickness in each channel; a path has only one".to_owned());
+        }
+        if last.thickness_mm.is_finite() {
+            return Err("its last layer ends; within a body it is endless (without `thickness_mm`)".to_owned());
+        }
+        let layer = |row: &[optics::TissueLayer; 3]| {
+            TissueLayer::isotropic(&row.map(|layer| layer.medium), row[0].thickness_mm)
         };
-        Self::new(vec![layer], media[1].refractive_index)
+        Ok(Self::new(rows.iter().map(layer).collect(), index))
     }
 
     /// The tissue of a material.
@@ -69,6 +90,7 @@ impl Tissue {
         let media = match &material.scattering {
             Scattering::Medium(media) => *media,
             Scattering::Kernel(_) => return Err(no_medium()),
+            Scattering::Layers(channels) => return Self::of_layers(channels).map_err(bad),
             Scattering::Preset(name) => {
                 let preset = presets::find(name).map_err(|e| bad(e.to_string()))?;
                 match preset.media() {
@@ -127,6 +149,17 @@ impl Tissue {
 }
 
 impl TissueLayer {
+    /// By reduced coefficients, all directions alike.
+    fn isotropic(media: &[Medium; 3], thickness_mm: f64) -> Self {
+        let rgb = |of: fn(&Medium) -> f64| DVec3::from_array([&media[0], &media[1], &media[2]].map(of));
+        Self {
+            thickness_mm,
+            sigma_a_per_mm: rgb(|m| m.sigma_a_per_mm),
+            sigma_s_per_mm: rgb(|m| m.sigma_s_reduced_per_mm),
+            g: 0.0,
+        }
+    }
+
     /// Extinction, 1/mm.
     pub fn sigma_t_per_mm(&self) -> DVec3 {
         self.sigma_a_per_mm + self.sigma_s_per_mm
@@ -149,4 +182,41 @@ fn three_layer_skin() -> Tissue {
         layer(f64::INFINITY, [0.085, 1.0, 25.0], [4.5, 4.7, 4.8]),
     ];
     Tissue::new(layers, 1.4)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn layers(mut change: impl FnMut(usize, usize, &mut optics::TissueLayer)) -> [Vec<optics::TissueLayer>; 3] {
+        [0, 1, 2].map(|channel| {
+            let layer = |i: usize| {
+                let medium = Medium::new(0.1 * (i + 1) as f64, 1.0 + channel as f64, 1.4).expect("is physical");
+                let mut layer = optics::TissueLayer { medium, thickness_mm: [0.25, f64::INFINITY][i] };
+                change(channel, i, &mut layer);
+                layer
+            };
+            vec![layer(0), layer(1)]
+        })
+    }
+
+    #[test]
+    fn layers_fill_a_body() {
+        let tissue = Tissue::of_layers(&layers(|_, _, _| {})).expect("can be simulated");
+        assert_eq!((tissue.layers().len(), tissue.core_depth_mm(), tissue.refractive_index), (2, 0.25, 1.4));
+        assert_eq!(tissue.layer_at(0.2).sigma_s_per_mm, DVec3::new(1.0, 2.0, 3.0));
+        assert_eq!(tissue.layer_at(0.3).sigma_a_per_mm, DVec3::splat(0.2));
+    }
+
+    #[test]
+    fn layers_that_no_path_can_take_are_refused_in_words() {
+        let refused = |change: fn(usize, usize, &mut optics::TissueLayer)| {
+            Tissue::of_layers(&layers(change)).expect_err("is refused")
+        };
+        assert!(refused(|_, i, layer| layer.medium.refractive_index += i as f64).contains("refractive indices"));
+        assert!(refused(|c, i, layer| layer.thickness_mm += (c * i) as f64 - 0.1 * c as f64).contains("another thickness"));
+        assert!(refused(|_, i, layer| layer.thickness_mm = 1.0 + i as f64).contains("last layer ends"));
+        assert!(refused(|_, _, layer| layer.medium.sigma_a_per_mm = -1.0).contains("negative"));
+        assert!(Tissue::of_layers(&[vec![], vec![], vec![]]).is_err());
+    }
 }

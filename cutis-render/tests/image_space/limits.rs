@@ -22,7 +22,8 @@ fn no_free_path_is_an_opaque_surface_and_an_endless_one_is_dark() {
     assert!(endless.iter().all(|e| e.is_finite() && e.max_element() < 1e-6), "{}", mean(&endless));
 }
 
-/// Triangles cut into four, by image-space with planes of triangles and of the smooth surface, and by wrap.
+/// Triangles cut into four, by image-space with planes of triangles and of the smooth surface, and by the techniques that have
+/// no test of their own for it.
 #[test]
 fn triangles_may_be_split() {
     let mut whole = ball_under_the_sky(6.0, 32);
@@ -31,8 +32,14 @@ fn triangles_may_be_split() {
     let object = &whole.objects[0];
     cut.objects = vec![Object::new("ball", split(&object.mesh), object.material.clone())];
     let sampled = |jacobian| settings(ImageSpaceSettings { jacobian, ..Default::default() });
-    let wrapped = Settings { technique: TechniqueName::Wrap, ..settings(ImageSpaceSettings::default()) };
-    for (name, settings) in [("planes", sampled(true)), ("smooth", sampled(false)), ("wrap", wrapped)] {
+    let by = |technique| Settings { technique, ..settings(ImageSpaceSettings::default()) };
+    for (name, settings) in [
+        ("planes", sampled(true)),
+        ("smooth", sampled(false)),
+        ("wrap", by(TechniqueName::Wrap)),
+        ("texture-blur", by(TechniqueName::TextureBlur)),
+        ("texture-space", by(TechniqueName::TextureSpace)),
+    ] {
         let [a, b] = [&whole, &cut].map(|scene| exitances(&draw(scene, &settings)));
         let apart = a.iter().zip(&b).map(|(a, b)| (*a - *b).abs().max_element()).sum::<f32>() / a.len() as f32;
         let level = mean(&a).x;

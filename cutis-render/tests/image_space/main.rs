@@ -4,6 +4,6 @@ mod balls;
 #[path = "../common/mod.rs"]
 mod common;
 mod limits;
-mod mixtures;
+mod media;
 mod planes;
 mod scenes;

@@ -6,7 +6,7 @@ use super::text::{double, list, number, quoted, vector};
 use crate::read::MESH_PREFIX;
 use crate::source::{ObjectSource, TextureSource};
 use crate::{ColourMap, Material, NormalSpace, ScalarMap, Scattering, SceneError, Texture};
-use cutis_optics::Medium;
+use cutis_optics::{Medium, TissueLayer};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -61,7 +61,8 @@ pub(super) fn keys(
 fn scattering(scattering: &Scattering) -> (&'static str, String) {
     match scattering {
         Scattering::Preset(name) => ("preset", quoted(name)),
-        Scattering::Medium(media) => ("medium", medium(media)),
+        Scattering::Medium(media) => ("medium", format!("{{ {} }}", medium(media))),
+        Scattering::Layers(channels) => ("layers", layers(channels)),
         Scattering::Kernel(kernel) => {
             let weights = list(kernel.weights.iter().map(|w| list(w.map(double))));
             let variances = list(kernel.variances_mm2.iter().copied().map(double));
@@ -76,10 +77,23 @@ fn under(layer: &ColourMap, source: &ObjectSource, files: &mut Files) -> Result<
     Ok(format!("{{ path = {}, {colour} }}", quoted(&picture(map, source, true, files)?)))
 }
 
+/// One table for each layer; what is endless has no thickness.
+fn layers(channels: &[Vec<TissueLayer>; 3]) -> String {
+    let [red, green, blue] = channels;
+    let rows = red.iter().zip(green).zip(blue).map(|((r, g), b)| [r, g, b]);
+    list(rows.map(|row| {
+        let coefficients = medium(&row.map(|layer| layer.medium));
+        match row[0].thickness_mm {
+            f64::INFINITY => format!("{{ {coefficients} }}"),
+            mm => format!("{{ {coefficients}, thickness_mm = {} }}", double(mm)),
+        }
+    }))
+}
+
 fn medium(media: &[Medium; 3]) -> String {
     let each = |value: fn(&Medium) -> f64| list(media.iter().map(|m| double(value(m))));
     format!(
-        "{{ sigma_a_per_mm = {}, sigma_s_reduced_per_mm = {}, refractive_index = {} }}",
+        "sigma_a_per_mm = {}, sigma_s_reduced_per_mm = {}, refractive_index = {}",
         each(|m| m.sigma_a_per_mm),
         each(|m| m.sigma_s_reduced_per_mm),
         each(|m| m.refractive_index),

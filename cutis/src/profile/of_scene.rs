@@ -24,6 +24,7 @@ impl Material {
         let substance = match scattering {
             Scattering::Preset(name) => return Self::preset(name),
             Scattering::Medium(media) => Substance::Coloured(media.each_ref().map(endless)),
+            Scattering::Layers(channels) => Substance::Coloured(channels.clone()),
             Scattering::Kernel(kernel) => Substance::Kernel(kernel.clone()),
         };
         Ok(Self { name: name.to_owned(), origin: "the scene".to_owned(), substance })

@@ -7,14 +7,15 @@ use crate::read::image::ColourSpace;
 use crate::{
     ColourMap, Material, NormalMap, NormalSpace, ScalarMap, Scattering, SceneError, SecondMedium, Texture,
 };
-use cutis_optics::{Medium, RgbGaussianSum};
+use cutis_optics::{Medium, RgbGaussianSum, TissueLayer};
 use glam::Vec3;
 use std::sync::Arc;
 
-const KNOWN: [&str; 15] = [
+const KNOWN: [&str; 16] = [
     "preset",
     "medium",
     "kernel",
+    "layers",
     "albedo",
     "albedo_colour",
     "albedo_mix",
@@ -28,6 +29,15 @@ const KNOWN: [&str; 15] = [
     "under",
     "mixed_with",
 ];
+
+/// The keys of a medium.
+const COEFFICIENTS: [&str; 3] = ["sigma_a_per_mm", "sigma_s_reduced_per_mm", "refractive_index"];
+
+/// The keys that say what the tissue is.
+const TISSUES: [&str; 4] = ["kernel", "layers", "medium", "preset"];
+
+/// Most layers of a tissue.
+const MAX_LAYERS: usize = 64;
 
 /// Most Gaussians of a kernel.
 const MAX_GAUSSIANS: usize = 64;
@@ -81,7 +91,7 @@ impl Change {
 /// not.
 fn has_its_own_colour(scattering: &Scattering) -> bool {
     match scattering {
-        Scattering::Medium(_) => true,
+        Scattering::Medium(_) | Scattering::Layers(_) => true,
         Scattering::Preset(name) => {
             cutis_optics::presets::find(name).is_ok_and(|preset| preset.media().is_some())
         }
@@ -151,30 +161,55 @@ fn mixed_with(keys: &Keys, images: &mut Images) -> Result<Option<SecondMedium>, 
 }
 
 fn scattering(keys: &Keys) -> Result<Option<Scattering>, SceneError> {
-    let preset = keys.string("preset")?;
-    if let Some(kernel_keys) = keys.table("kernel")? {
-        for other in ["preset", "medium"] {
-            if keys.has(other) {
-                return Err(
-                    keys.error("kernel", format!("stands beside `{other}`; only one can be the tissue"))
-                );
+    let mut there = TISSUES.into_iter().filter(|key| keys.has(key));
+    let Some(key) = there.next() else { return Ok(None) };
+    if let Some(other) = there.next() {
+        return Err(keys.error(key, format!("stands beside `{other}`; only one can be the tissue")));
+    }
+    let table = || keys.required(key, keys.table(key)?);
+    match key {
+        "kernel" => kernel(&table()?),
+        "layers" => layers(keys),
+        "medium" => medium(&table()?),
+        _ => match keys.required(key, keys.string(key)?)? {
+            "" => Err(keys.error(key, "is empty")),
+            // Names are looked up where they are known, in the renderer.
+            name => Ok(Scattering::Preset(name.to_owned())),
+        },
+    }
+    .map(Some)
+}
+
+fn medium(keys: &Keys) -> Result<Scattering, SceneError> {
+    keys.only(&COEFFICIENTS)?;
+    media(keys).map(Scattering::Medium)
+}
+
+/// A list of media, the top one first, each with its thickness; the last may be endless.
+fn layers(keys: &Keys) -> Result<Scattering, SceneError> {
+    let tables = keys.tables("layers")?;
+    if tables.is_empty() || tables.len() > MAX_LAYERS {
+        return Err(keys.error("layers", format!("{} of them; must be 1 to {MAX_LAYERS}", tables.len())));
+    }
+    let mut layers = [const { Vec::new() }; 3];
+    for (i, layer) in tables.iter().enumerate() {
+        layer.only(&[&COEFFICIENTS[..], &["thickness_mm"]].concat())?;
+        layer.number_in("thickness_mm", f32::MIN_POSITIVE..=1e6)?;
+        let thickness_mm = match layer.double("thickness_mm")? {
+            None if i + 1 < tables.len() => {
+                return Err(layer.error("thickness_mm", "is missing: only the last layer may be endless"));
             }
+            given => given.unwrap_or(f64::INFINITY),
+        };
+        for (channel, medium) in layers.iter_mut().zip(media(layer)?) {
+            channel.push(TissueLayer { medium, thickness_mm });
         }
-        return kernel(&kernel_keys).map(Some);
     }
-    match (preset, keys.table("medium")?) {
-        (Some(_), Some(_)) => Err(keys.error("medium", "stands beside `preset`; only one can be the tissue")),
-        (Some(""), None) => Err(keys.error("preset", "is empty")),
-        // Names are looked up where they are known, in the renderer.
-        (Some(name), None) => Ok(Some(Scattering::Preset(name.to_owned()))),
-        (None, Some(medium_keys)) => medium(&medium_keys).map(Some),
-        (None, None) => Ok(None),
-    }
+    Ok(Scattering::Layers(layers))
 }
 
 /// Coefficients per channel in 1/mm, from nearly clear to nearly opaque.
-fn medium(keys: &Keys) -> Result<Scattering, SceneError> {
-    keys.only(&["sigma_a_per_mm", "sigma_s_reduced_per_mm", "refractive_index"])?;
+fn media(keys: &Keys) -> Result<[Medium; 3], SceneError> {
     let coefficients = |key, least| {
         keys.vector_in(key, least..=1e4)?;
         keys.required(key, keys.triple(key)?)
@@ -182,11 +217,11 @@ fn medium(keys: &Keys) -> Result<Scattering, SceneError> {
     let sigma_a = coefficients("sigma_a_per_mm", 0.0)?;
     let sigma_s_reduced = coefficients("sigma_s_reduced_per_mm", f32::MIN_POSITIVE)?;
     let index = refractive_index(keys)?;
-    Ok(Scattering::Medium([0, 1, 2].map(|i| Medium {
+    Ok([0, 1, 2].map(|i| Medium {
         sigma_a_per_mm: sigma_a[i],
         sigma_s_reduced_per_mm: sigma_s_reduced[i],
         refractive_index: index[i],
-    })))
+    }))
 }
 
 /// One for all channels, or one for each.

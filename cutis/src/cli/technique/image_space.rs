@@ -26,7 +26,7 @@ pub struct ImageSpaceArgs {
     /// Whether light that enters on the far side is taken from images that the lights see [default: on]
     #[arg(long, value_name = "SWITCH", value_parser = switch())]
     pub light_views: Option<bool>,
-    /// What radii are drawn from: the dipole of the medium, where there is one, or the sum of Gaussians of texture-space
+    /// What radii are drawn from: the dipole of the medium or the multipole of layers, where they are known, or the sum of Gaussians of texture-space
     /// [default: medium]
     #[arg(long, value_name = "NAME", value_parser = one_of(&ImageSpaceProfile::ALL))]
     pub sampled_profile: Option<ImageSpaceProfile>,

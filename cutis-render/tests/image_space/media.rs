@@ -1,7 +1,8 @@
-//! Media and reliefs that differ from pixel to pixel.
+//! Layers, and media and reliefs that differ from pixel to pixel.
 
-use crate::scenes::{draw, exitances, medium, plane, settings, sun, white};
-use cutis_optics::{Dipole, Medium, Profile};
+use crate::scenes::{draw, exitances, mean, medium, plane, settings, sun, white};
+use cutis_optics::{Dipole, Medium, Profile, Stack, TissueLayer};
+use cutis_render::prepare::radial::RadialKernel;
 use cutis_render::technique::image_space::{ImageSpaceSettings, SampleCount};
 use cutis_render::{Aov, Settings, TechniqueName};
 use cutis_scene::{
@@ -54,6 +55,39 @@ fn every_place_is_of_the_mixture_that_the_map_says() {
     let other = Settings { technique: TechniqueName::TextureSpace, ..settings(ImageSpaceSettings::default()) };
     let told = |settings| draw(&scene, &settings).warnings.iter().any(|words| words.contains("second medium"));
     assert!(told(other) && !told(settings(ImageSpaceSettings::default())));
+}
+
+/// A thin absorbing layer over a clearer one, as of skin; blue does not get far.
+fn skin_of_two_layers() -> [Vec<TissueLayer>; 3] {
+    let layer = |a, s, thickness_mm| TissueLayer { medium: Medium::new(a, s, 1.4).expect("is physical"), thickness_mm };
+    [[0.1, 0.02], [0.25, 0.1], [0.8, 0.4]].map(|[a, b]| vec![layer(a, 4.8, 0.5), layer(b, 2.4, f64::INFINITY)])
+}
+
+/// Layers are sampled by their own profile, not by Gaussians that were fitted to it.
+#[test]
+fn layers_are_sampled_as_they_are() {
+    let material = white(Scattering::Layers(skin_of_two_layers()));
+    let stacks = skin_of_two_layers().map(|layers| Stack::in_air(&layers).expect("is physical"));
+    let picture = settings(ImageSpaceSettings::default());
+    let kernel = RadialKernel::new(&material, &picture, 1).expect("can be sampled");
+    for r_mm in [0.01, 0.1, 0.4, 1.0, 3.0, 9.0] {
+        let found = kernel.at_mm(r_mm);
+        for (channel, stack) in stacks.iter().enumerate() {
+            // The kernel has the total of the fit, which keeps it to 1e-3 or so; the rest is interpolation.
+            let expected = stack.at_mm(f64::from(r_mm)) as f32;
+            let off = (found[channel] - expected).abs();
+            assert!(off < 4e-3 * expected + 1e-6, "{r_mm} mm, {channel}: {} against {expected}", found[channel]);
+        }
+    }
+    let own = ImageSpaceSettings { samples: 256, count: SampleCount::All, ..ImageSpaceSettings::default() };
+    let pixels = exitances(&draw(&plane(material, Vec3::Z * 1000.0, sun(1.0)), &settings(own)));
+    let totals = stacks.map(|stack| stack.total() as f32);
+    // The middle, whose samples do not meet the border of the image.
+    let middle: Vec<Vec3> = (16..32).flat_map(|y| (16..32).map(move |x| y * 48 + x)).map(|i| pixels[i]).collect();
+    let found = mean(&middle);
+    eprintln!("layers: {found}, expected {totals:?}");
+    // Samples are drawn by the mean of three profiles; their noise is that of 80,000.
+    assert!((found / Vec3::from_array(totals) - 1.0).abs().max_element() < 5e-3, "{found} against {totals:?}");
 }
 
 /// A relief that tilts half of the plane by 45 degrees takes in as much less light.

@@ -144,14 +144,14 @@ fn another_round_takes_other_places() {
     };
     let mut ready = renderer.scene(&scene, &in_round(0), &Silent).expect("is uploaded");
     let first = drawn(&ready);
-    ready.set_sampling(gpu, &scene, &in_round(5)).expect("is sampled");
+    ready.set_sampling(gpu, &in_round(5)).expect("is sampled");
     let fresh = renderer.scene(&scene, &in_round(5), &Silent).expect("is uploaded");
     assert_eq!(drawn(&ready), drawn(&fresh));
     assert_ne!(drawn(&ready), first);
     // More samples of a pixel share its places.
     let finer = Settings { samples_per_pixel: 4, ..in_round(5) };
     ready.set_picture(gpu, passes, &finer).expect("is small");
-    ready.set_sampling(gpu, &scene, &finer).expect("is sampled");
+    ready.set_sampling(gpu, &finer).expect("is sampled");
     let fresh = renderer.scene(&scene, &finer, &Silent).expect("is uploaded");
     assert_eq!(drawn(&ready), drawn(&fresh));
 }

@@ -25,11 +25,11 @@ fn plate_on_a_plane(light: Light) -> Scene {
     scene
 }
 
-fn sun() -> Light {
+fn sun(angular_radius_rad: f32) -> Light {
     Light::Directional {
         dir_to_light: Vec3::new(1.0, 0.0, SLOPE).normalize(),
         irradiance_w_per_m2: Vec3::ONE,
-        angular_radius_rad: 0.0,
+        angular_radius_rad,
     }
 }
 
@@ -54,7 +54,7 @@ fn the_shadow_of_a_thin_plate_begins_at_its_foot_and_has_no_holes() {
     let Some(renderer) = renderer("the_shadow_of_a_thin_plate_begins_at_its_foot_and_has_no_holes") else {
         return;
     };
-    for (light, what) in [(sun(), "sharp"), (lamp(), "soft")] {
+    for (light, what) in [(sun(0.0), "sharp"), (sun(0.01), "of a wide sun"), (lamp(), "soft")] {
         let scene = plate_on_a_plane(light);
         let (seen, size) = seen_of(renderer, &scene, 512);
         let foot_mm = 0.6 * SIDE_MM;

@@ -3,11 +3,12 @@
 mod common;
 
 use common::tolerances::{self, Tolerance};
-use common::{difference, head_in_the_studio, renderer, small_frame};
+use common::{difference, head_in_the_studio, patch, patch_under_a_spot, renderer, small_frame};
 use cutis_render::settings::TechniqueSettings;
 use cutis_render::technique::wrap::{WrapForm, WrapSettings, WrapShine};
 use cutis_render::{CpuRenderer, Renderer, Settings, Silent, TechniqueName};
-use cutis_scene::{Environment, Scene};
+use cutis_scene::validation::shapes;
+use cutis_scene::{Environment, Light, Material, Object, Scene};
 use glam::Vec3;
 
 fn same_on_both(test: &str, scene: &Scene, wrap: WrapSettings, allowed: Tolerance) {
@@ -27,6 +28,24 @@ fn same_on_both(test: &str, scene: &Scene, wrap: WrapSettings, allowed: Toleranc
 fn the_paper_s_table_on_the_built_in_head() {
     let usual = WrapSettings::default();
     same_on_both("the_paper_s_table", &head_in_the_studio(), usual, tolerances::WRAPPED_HEAD[0]);
+}
+
+/// A wall's wide shadow over a plate that the light only grazes, where the wrap mixes what the plate's texture knows with what a
+/// place above it sees.
+#[test]
+fn a_shadow_where_the_light_ends() {
+    let mut scene = patch_under_a_spot(patch(|u| 40.0 * u, |v| 40.0 * v));
+    let [lo, hi] = scene.bounds_mm().expect("has points");
+    let middle_mm = 0.5 * (lo + hi);
+    let wall = shapes::cuboid(middle_mm + Vec3::new(8.0, 0.0, 2.0), Vec3::new(0.5, 8.0, 3.0));
+    scene.objects.push(Object::new("wall", wall, Material::default()));
+    scene.lights = vec![Light::Directional {
+        dir_to_light: Vec3::new(1.0, 0.1, 0.15).normalize(),
+        irradiance_w_per_m2: Vec3::splat(3.0),
+        angular_radius_rad: 0.05,
+    }];
+    let wide = WrapSettings { wrap: 0.4, shadow_offset_mm: 4.0, ..WrapSettings::default() };
+    same_on_both("a_shadow_where_the_light_ends", &scene, wide, tolerances::WRAPPED_SHADOW);
 }
 
 /// Every number other than usual, so that each is missed where it is not handed on: the wide wrap of each channel, green tint,

@@ -49,6 +49,7 @@ pub mod simulate;
 mod single_scattering;
 mod source;
 mod stack;
+mod tabulated_profile;
 pub mod translate;
 mod trust;
 mod wide_beam;
@@ -73,6 +74,7 @@ pub use ring_profile::RingProfile;
 pub use single_scattering::SingleScattering;
 pub use source::{BoxedProfile, ProfileSource, SourceError};
 pub use stack::{Stack, StackError, StackTransmittance, TissueLayer};
+pub use tabulated_profile::TabulatedProfile;
 pub use trust::Trust;
 pub use wide_beam::WideBeam;
 

@@ -129,6 +129,15 @@ mod tests {
                 assert!(dark.length() < 1e-4, "{second} s: {dark}");
             }
         }
+        // Upwards, by a quarter of the height of four rows.
+        let rows = colours.map(|c| [c.x, c.y, c.z, 1.0]).to_vec();
+        let image = Arc::new(Texture::new(1, 4, Texels::LinearF32(rows)));
+        let rising = Projector { image, shift: Vec2::new(0.0, 0.25), ..slide() };
+        let light = Light::Projector(rising);
+        for (y, colour) in [(75.0, Vec3::Y), (25.0, Vec3::Z), (-25.0, Vec3::ONE), (-75.0, Vec3::X)] {
+            let found = light.sample(Vec3::new(0.0, y, 0.0)).irradiance_w_per_m2.normalize();
+            assert!((found - colour.normalize()).length() < 1e-4, "{y} mm: {found}");
+        }
         let beside = Light::Projector(moving.after(1.0)).sample(Vec3::new(201.0, 50.0, 0.0));
         assert_eq!(beside.irradiance_w_per_m2, Vec3::ZERO, "the frame stays where it is");
     }

@@ -73,6 +73,9 @@ pub struct Profiles {
     places: wgpu::Buffer,
     radials: wgpu::Buffer,
     lights: Vec<u32>,
+    /// Object by object, as many mixtures of each.
+    kernels: Vec<RadialKernel>,
+    mixtures: u32,
 }
 
 impl Profiles {
@@ -81,8 +84,11 @@ impl Profiles {
     /// # Errors
     /// If a material has no profile that can be sampled.
     pub fn new(gpu: &Gpu, scene: &Scene, settings: &Settings, lights: &[u32]) -> Result<Self, RenderError> {
+        let materials = || scene.objects.iter().map(|object| &object.material);
+        let mixtures = mixtures::count(materials());
+        let of = |material| RadialKernel::of_mixtures(material, settings, mixtures);
         // Room for a picture of one sample a pixel, which takes most places.
-        let kernels = kernels(scene, settings, 1)?;
+        let kernels = materials().map(of).collect::<Result<Vec<_>, _>>()?.concat();
         let tables: Vec<[f32; 4]> =
             kernels.iter().flat_map(|kernel| kernel.table.iter().map(|entry| entry.to_array())).collect();
         let radial = |kernel: &RadialKernel| Radial {
@@ -97,25 +103,28 @@ impl Profiles {
             places: gpu.storage("places to look at", &places(&kernels)),
             radials: gpu.storage("profiles", &radials),
             lights: lights.to_vec(),
+            kernels,
+            mixtures,
         };
-        this.set_sampling(gpu, scene, settings)?;
+        this.set_sampling(gpu, settings)?;
         Ok(this)
     }
 
     /// Takes the places of a round, for as many samples of a pixel as the settings want.
     ///
     /// # Errors
-    /// If a material has no profile that can be sampled.
-    pub fn set_sampling(&self, gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<(), RenderError> {
+    /// If the disc of the uniform samples has no radius.
+    pub fn set_sampling(&self, gpu: &Gpu, settings: &Settings) -> Result<(), RenderError> {
         let grid = settings.samples_grid();
-        let kernels = kernels(scene, settings, grid * grid)?;
         let image_space = &settings.techniques.image_space;
+        let again = |kernel: &RadialKernel| kernel.sampled(image_space, grid * grid);
+        let kernels = self.kernels.iter().map(again).collect::<Result<Vec<_>, _>>()?;
         let mut numbers = Gathering {
             light_count: self.lights.len() as u32,
             place_count: kernels.first().map_or(0, |kernel| kernel.counts.iter().sum()),
             jacobian: u32::from(image_space.jacobian),
             count_valid: u32::from(image_space.count == SampleCount::Valid),
-            mixtures: mixtures::count(scene.objects.iter().map(|object| &object.material)),
+            mixtures: self.mixtures,
             round: image_space.round,
             ..Gathering::zeroed()
         };
@@ -124,14 +133,6 @@ impl Profiles {
         gpu.queue.write_buffer(&self.places, 0, bytemuck::cast_slice(&places(&kernels)));
         Ok(())
     }
-}
-
-/// Object by object, as many mixtures of each.
-fn kernels(scene: &Scene, settings: &Settings, times: u32) -> Result<Vec<RadialKernel>, RenderError> {
-    let materials = || scene.objects.iter().map(|object| &object.material);
-    let count = mixtures::count(materials());
-    let of = |material| RadialKernel::of_mixtures(material, settings, count, times);
-    Ok(materials().map(of).collect::<Result<Vec<_>, _>>()?.concat())
 }
 
 fn places(kernels: &[RadialKernel]) -> Vec<PlaceToLook> {

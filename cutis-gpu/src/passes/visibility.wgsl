@@ -188,11 +188,11 @@ struct Cone {
 }
 
 fn cone_to(map: LightMap, extent: f32, to: Receiver, shift: vec2f) -> Cone {
-    let found_mm = blocker_depth_mm(map, extent, to, shift);
+    let blocker = blocker_before(map, extent, to, shift);
     // The horizon is the same at any depth of the cone to the light.
-    let hidden_by_mm = select(to.axes_mm.z - 1.0, found_mm, found_mm > 0.0);
+    let hidden_by_mm = select(to.axes_mm.z - 1.0, blocker.depth_mm, blocker.found);
     let radius = disc_radius(map, extent, to.axes_mm.z, hidden_by_mm);
-    let is_clear = found_mm <= 0.0 && is_high(map, to, radius, hidden_by_mm);
+    let is_clear = !blocker.found && is_high(map, to, radius, hidden_by_mm);
     return Cone(radius, hidden_by_mm, select(group_of.samples, 0u, is_clear));
 }
 
@@ -270,8 +270,14 @@ fn disc_radius(map: LightMap, extent: f32, depth_mm: f32, hidden_by_mm: f32) -> 
     return 0.5 * extent * gap_mm / (depth_mm * map_half_width_mm(map, hidden_by_mm));
 }
 
-/// Mean depth of what lies before the point, as seen from the light's disc; 0 if nothing does.
-fn blocker_depth_mm(map: LightMap, extent: f32, to: Receiver, shift: vec2f) -> f32 {
+/// What lies before a point, and its mean depth. Depths of a directional light may be below 0.
+struct Blocker {
+    found: bool,
+    depth_mm: f32,
+}
+
+/// What lies before the point, as seen from the light's disc.
+fn blocker_before(map: LightMap, extent: f32, to: Receiver, shift: vec2f) -> Blocker {
     let radius = disc_radius(map, extent, to.axes_mm.z, map.near_mm);
     var sum_mm = 0.0;
     var count = 0.0;
@@ -287,7 +293,7 @@ fn blocker_depth_mm(map: LightMap, extent: f32, to: Receiver, shift: vec2f) -> f
             break if s >= SEARCH_SAMPLES;
         }
     }
-    return select(0.0, sum_mm / max(count, 1.0), count > 0.0);
+    return Blocker(count > 0.0, sum_mm / max(count, 1.0));
 }
 
 /// Depth of the point's tangent plane elsewhere on the map, if that is nearer to the light than the point, mm.

@@ -204,12 +204,12 @@ impl GpuScene {
     }
 
     /// Takes the pattern of another round, and as many samples of a pixel as the settings want, for the technique that samples
-    /// the profile; `scene` is the one this was made from.
+    /// the profile.
     ///
     /// # Errors
-    /// If a material has no profile that can be sampled.
-    pub fn set_sampling(&self, gpu: &Gpu, scene: &Scene, settings: &Settings) -> Result<(), RenderError> {
-        self.images.as_ref().map_or(Ok(()), |images| images.profiles.set_sampling(gpu, scene, settings))
+    /// If the disc of the uniform samples has no radius.
+    pub fn set_sampling(&self, gpu: &Gpu, settings: &Settings) -> Result<(), RenderError> {
+        self.images.as_ref().map_or(Ok(()), |images| images.profiles.set_sampling(gpu, settings))
     }
 
     /// Moves the camera.

@@ -12,6 +12,14 @@ pub struct MixtureSampler {
     parts: Vec<(f32, Box<dyn RadialSampler + Send + Sync>)>,
 }
 
+/// Without the samplers.
+impl core::fmt::Debug for MixtureSampler {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let ends: Vec<f32> = self.parts.iter().map(|(end, _)| *end).collect();
+        f.debug_struct("MixtureSampler").field("ends", &ends).finish_non_exhaustive()
+    }
+}
+
 impl MixtureSampler {
     /// A mixture of samplers with shares that are above 0; these are scaled to sum 1. `None` if there is no such share.
     pub fn new(parts: Vec<(f64, Box<dyn RadialSampler + Send + Sync>)>) -> Option<Self> {

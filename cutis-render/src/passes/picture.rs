@@ -152,11 +152,11 @@ impl<'a> Lens<'a> {
         let reach = SHARED_TEXELS / object.material.largest_map().max(maps.atlas.size as u32) as f32;
         let (mut lo, mut hi) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
         for (_, hit) in seen {
-            let hit = (*hit)?;
+            // Another object may have fewer triangles than the number of this one.
+            let hit = (*hit).filter(|hit| hit.object == first.object)?;
             let uv = object.uv_at(hit.triangle, hit.b1, hit.b2);
             (lo, hi) = (lo.min(uv), hi.max(uv));
-            let same =
-                hit.object == first.object && object.charts.of_triangle[hit.triangle as usize] == chart;
+            let same = object.charts.of_triangle[hit.triangle as usize] == chart;
             if !same || (hi - lo).max_element() > reach {
                 return None;
             }

@@ -14,9 +14,11 @@ use cutis_optics::sample::{
     DipoleSampler, DiscPattern, GaussianSampler, INTERLEAVED_PIXELS, MixtureSampler, RadialSampler,
     TabulatedSampler, UniformDisc,
 };
-use cutis_optics::{Dipole, Gaussian, GaussianSum, Medium, Profile, Stack};
+use cutis_optics::{Dipole, Gaussian, GaussianSum, Medium, Profile, Stack, TabulatedProfile};
 use cutis_scene::{Material, Scattering};
 use glam::{Vec2, Vec3, Vec4};
+use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Entries of the table.
 pub const ENTRIES: usize = 1024;
@@ -30,7 +32,7 @@ const WITHIN_DISC: f32 = 0.95;
 /// One channel's profile and what draws from it.
 pub struct Channel {
     /// R, in any scale.
-    pub profile: Box<dyn Profile>,
+    pub profile: Box<dyn Profile + Send + Sync>,
     /// Draws radii by R.
     pub sampler: Box<dyn RadialSampler + Send + Sync>,
 }
@@ -50,6 +52,8 @@ pub struct RadialKernel {
     pub counts: [u32; 2],
     /// Places to look at, as many for each of the pixels that complete each other.
     pub places: Vec<PlaceToLook>,
+    /// Draws radii by p.
+    sampler: Arc<MixtureSampler>,
 }
 
 /// A place on the tangent plane.
@@ -62,16 +66,16 @@ pub struct PlaceToLook {
 }
 
 impl RadialKernel {
-    /// Of a material, where a pixel is looked at `times` times.
+    /// Of a material, where a pixel is looked at once.
     ///
     /// # Errors
     /// If it has no profile that can be sampled.
-    pub fn new(material: &Material, settings: &Settings, times: u32) -> Result<Self, RenderError> {
+    pub fn new(material: &Material, settings: &Settings) -> Result<Self, RenderError> {
         let bad = |reason: String| RenderError::BadMaterial { material: material.name.clone(), reason };
         let kernel = kernel_of(material, settings.gaussians)?;
         let image_space = &settings.techniques.image_space;
         let channels = channels(material, &kernel, image_space.profile).map_err(bad)?;
-        Self::of_channels(channels, kernel.total(), image_space, times)
+        Self::of_channels(channels, kernel.total(), image_space)
             .ok_or_else(|| bad("its profile has no light to be sampled".to_owned()))
     }
 
@@ -83,18 +87,12 @@ impl RadialKernel {
         material: &Material,
         settings: &Settings,
         count: u32,
-        times: u32,
     ) -> Result<Vec<Self>, RenderError> {
-        mixtures(material, count)?.iter().map(|mixture| Self::new(mixture, settings, times)).collect()
+        mixtures(material, count)?.iter().map(|mixture| Self::new(mixture, settings)).collect()
     }
 
     /// Of any three profiles, scaled to the totals that are wanted. `None` if these are all 0.
-    pub fn of_channels(
-        channels: [Channel; 3],
-        totals: Vec3,
-        settings: &ImageSpaceSettings,
-        times: u32,
-    ) -> Option<Self> {
+    pub fn of_channels(channels: [Channel; 3], totals: Vec3, settings: &ImageSpaceSettings) -> Option<Self> {
         let (profiles, parts): (Vec<_>, Vec<_>) = channels
             .into_iter()
             .zip(totals.to_array())
@@ -103,29 +101,45 @@ impl RadialKernel {
         let mixture = MixtureSampler::new(parts)?;
         let fine_mm = (FINE * mixture.radius_holding(0.01)).max(f32::MIN_POSITIVE);
         let entries_per_e = (ENTRIES - 1) as f32 / (mixture.radius_holding(1.0 - BEYOND) / fine_mm).ln_1p();
-        let disc_mm = settings.uniform_radius_mm.unwrap_or_else(|| mixture.radius_holding(WITHIN_DISC));
         let entry = |i: usize| {
             let r_mm = f64::from(fine_mm) * (i as f64 / f64::from(entries_per_e)).exp_m1();
-            let at = |(profile, total): &(Box<dyn Profile>, f32)| match *total {
+            let at = |(profile, total): &(Box<dyn Profile + Send + Sync>, f32)| match *total {
                 0.0 => 0.0,
                 total => (profile.at_mm(r_mm) * f64::from(total) / profile.total()) as f32,
             };
             Vec3::new(at(&profiles[0]), at(&profiles[1]), at(&profiles[2]))
                 .extend(mixture.pdf_per_mm2(r_mm as f32))
         };
-        let counts = [settings.samples, settings.uniform_samples].map(|n| n.div_ceil(times.max(1)));
         let table = (0..ENTRIES).map(entry).collect();
-        let mut this = Self { table, fine_mm, entries_per_e, disc_mm, counts, places: Vec::new() };
-        this.places = this.all_places(&mixture, UniformDisc::new(disc_mm)?, settings.round);
-        Some(this)
+        let (sampler, places) = (Arc::new(mixture), Vec::new());
+        Self { table, fine_mm, entries_per_e, disc_mm: 0.0, counts: [0; 2], places, sampler }
+            .sampled(settings, 1)
+            .ok()
     }
 
-    fn all_places(&self, mixture: &MixtureSampler, disc: UniformDisc, round: u32) -> Vec<PlaceToLook> {
+    /// The same profile where a pixel is looked at `times` times, by the numbers and the round of settings.
+    ///
+    /// # Errors
+    /// If the disc of the uniform samples has no radius.
+    pub fn sampled(&self, settings: &ImageSpaceSettings, times: u32) -> Result<Self, RenderError> {
+        let disc_mm = settings.uniform_radius_mm.unwrap_or_else(|| self.sampler.radius_holding(WITHIN_DISC));
+        let counts = [settings.samples, settings.uniform_samples].map(|n| n.div_ceil(times.max(1)));
+        let disc = UniformDisc::new(disc_mm).ok_or_else(|| RenderError::BadSetting {
+            name: "radius of the uniform samples",
+            range: "above 0 and finite, in mm",
+            value: disc_mm.to_string(),
+        })?;
+        let mut this = Self { disc_mm, counts, ..self.clone() };
+        this.places = this.all_places(disc, settings.round);
+        Ok(this)
+    }
+
+    fn all_places(&self, disc: UniformDisc, round: u32) -> Vec<PlaceToLook> {
         let pattern = |count: u32, pixel: u32| {
             DiscPattern::interleaved(count as usize, pixel % 4, pixel / 4).in_round(round)
         };
         let of_pixel = |pixel: u32| {
-            let followers = pattern(self.counts[0], pixel).samples(mixture);
+            let followers = pattern(self.counts[0], pixel).samples(&*self.sampler);
             // Where the profile has a pixel look first, the disc has it look last.
             let fillers = pattern(self.counts[1], INTERLEAVED_PIXELS - 1 - pixel).samples(&disc);
             let place = |s: cutis_optics::sample::DiscSample| PlaceToLook {
@@ -171,8 +185,8 @@ fn channels(material: &Material, kernel: &Kernel, choice: ImageSpaceProfile) -> 
         (ImageSpaceProfile::Gaussians, ..) => of_gaussians(),
         (_, _, Some([r, g, b])) => Ok([of_medium(&r)?, of_medium(&g)?, of_medium(&b)?]),
         (_, Scattering::Layers(layers), _) => {
-            let [r, g, b] = stacks(layers)?;
-            Ok([of_stack(r)?, of_stack(g)?, of_stack(b)?])
+            let channels: Result<Vec<_>, _> = stacks(layers)?.into_par_iter().map(of_stack).collect();
+            channels?.try_into().map_err(|_| "a profile has three channels".to_owned())
         }
         _ => of_gaussians(),
     }
@@ -181,8 +195,9 @@ fn channels(material: &Material, kernel: &Kernel, choice: ImageSpaceProfile) -> 
 /// Drawn from by a table, as any profile can be.
 fn of_stack(stack: Stack) -> Result<Channel, String> {
     let mean_free_path_mm = stack.shortest_mean_free_path_mm();
-    let sampler = TabulatedSampler::new(&stack, mean_free_path_mm).map_err(|e| e.to_string())?;
-    Ok(Channel { profile: Box::new(stack), sampler: Box::new(sampler) })
+    let profile = TabulatedProfile::new(stack, mean_free_path_mm);
+    let sampler = TabulatedSampler::new(&profile, mean_free_path_mm).map_err(|e| e.to_string())?;
+    Ok(Channel { profile: Box::new(profile), sampler: Box::new(sampler) })
 }
 
 fn of_medium(medium: &Medium) -> Result<Channel, String> {

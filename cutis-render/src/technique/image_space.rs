@@ -163,10 +163,11 @@ impl<'a> Sampled<'a> {
         let grid = settings.samples_grid();
         let kernels = |object: &Object| {
             let material = &object.material;
-            let of = |times| {
-                RadialKernel::of_mixtures(material, settings, mixtures::count([material].into_iter()), times)
-            };
-            Ok(Kernels { whole: of(1)?, shared: of(grid * grid)? })
+            let whole =
+                RadialKernel::of_mixtures(material, settings, mixtures::count([material].into_iter()))?;
+            let again = |kernel: &RadialKernel| kernel.sampled(&settings.techniques.image_space, grid * grid);
+            let shared = whole.iter().map(again).collect::<Result<_, _>>()?;
+            Ok(Kernels { whole, shared })
         };
         let kernels = lit.scene.objects.iter().map(kernels).collect::<Result<_, RenderError>>()?;
         let size = [settings.width, settings.height].map(|side| (side * grid) as usize);

@@ -188,7 +188,7 @@ fn three_layer_skin() -> Tissue {
 mod tests {
     use super::*;
 
-    fn layers(mut change: impl FnMut(usize, usize, &mut optics::TissueLayer)) -> [Vec<optics::TissueLayer>; 3] {
+    fn layers(change: impl Fn(usize, usize, &mut optics::TissueLayer)) -> [Vec<optics::TissueLayer>; 3] {
         [0, 1, 2].map(|channel| {
             let layer = |i: usize| {
                 let medium = Medium::new(0.1 * (i + 1) as f64, 1.0 + channel as f64, 1.4).expect("is physical");

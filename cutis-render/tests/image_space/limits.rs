@@ -5,6 +5,7 @@ use crate::scenes::{ball_under_the_sky, draw, exitances, mean, plane, settings, 
 use cutis_optics::Medium;
 use cutis_render::technique::image_space::ImageSpaceSettings;
 use cutis_render::{Diffusion, Settings, TechniqueName};
+use cutis_scene::validation::shapes;
 use cutis_scene::{Object, Scattering};
 use glam::Vec3;
 
@@ -20,6 +21,17 @@ fn no_free_path_is_an_opaque_surface_and_an_endless_one_is_dark() {
     assert!(off < 2e-3 * mean(&opaque).x, "{} against {}", mean(&sampled), mean(&opaque));
     let endless = exitances(&draw(&scene(1e9), &own));
     assert!(endless.iter().all(|e| e.is_finite() && e.max_element() < 1e-6), "{}", mean(&endless));
+}
+
+/// Pixels that a body of many triangles shares with one of few.
+#[test]
+fn a_small_body_stands_before_a_large_one() {
+    let mut scene = ball_under_the_sky(6.0, 64);
+    let wall = shapes::cuboid(Vec3::new(3.0, 0.0, 8.0), Vec3::new(1.3, 8.0, 0.5));
+    scene.objects.insert(0, Object::new("wall", wall, scene.objects[0].material.clone()));
+    let own = ImageSpaceSettings::default();
+    let exitances = exitances(&draw(&scene, &Settings { samples_per_pixel: 9, ..settings(own) }));
+    assert!(exitances.iter().all(|e| e.is_finite()) && mean(&exitances).x > 0.1);
 }
 
 /// Triangles cut into four, by image-space with planes of triangles and of the smooth surface, and by the techniques that have

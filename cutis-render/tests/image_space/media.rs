@@ -69,7 +69,7 @@ fn layers_are_sampled_as_they_are() {
     let material = white(Scattering::Layers(skin_of_two_layers()));
     let stacks = skin_of_two_layers().map(|layers| Stack::in_air(&layers).expect("is physical"));
     let picture = settings(ImageSpaceSettings::default());
-    let kernel = RadialKernel::new(&material, &picture, 1).expect("can be sampled");
+    let kernel = RadialKernel::new(&material, &picture).expect("can be sampled");
     for r_mm in [0.01, 0.1, 0.4, 1.0, 3.0, 9.0] {
         let found = kernel.at_mm(r_mm);
         for (channel, stack) in stacks.iter().enumerate() {

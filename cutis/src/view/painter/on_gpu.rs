@@ -187,7 +187,7 @@ impl OnGpu {
         kept.ready.set_camera(&renderer.gpu, &look.camera);
         let sampled = |settings: &Settings| (settings.samples_grid(), settings.techniques.image_space.round);
         if sampled(&kept.settings) != sampled(settings) {
-            kept.ready.set_sampling(&renderer.gpu, &kept.uploaded, settings)?;
+            kept.ready.set_sampling(&renderer.gpu, settings)?;
             kept.settings.samples_per_pixel = settings.samples_per_pixel;
             kept.settings.techniques.image_space.round = settings.techniques.image_space.round;
         }

@@ -83,7 +83,10 @@ mod tests {
                 let r_mm = medium.transport_mean_free_path_mm() * 40.0 * (f64::from(i) / 4000.0).powi(2);
                 let (found, exact) = (table.at_mm(r_mm), dipole.at_mm(r_mm));
                 let left = core::f64::consts::PI * r_mm * r_mm * exact / dipole.total();
-                assert!((found - exact).abs() < 1e-5 * exact || left < 2.0 * NEGLIGIBLE, "{r_mm}: {found} {exact}");
+                assert!(
+                    (found - exact).abs() < 1e-5 * exact || left < 2.0 * NEGLIGIBLE,
+                    "{r_mm}: {found} {exact}"
+                );
             }
             assert_eq!(table.at_mm(f64::MAX), 0.0);
             assert_eq!((table.at_mm(-1.0), table.at_mm(f64::NAN)), (table.at_mm(0.0), table.at_mm(0.0)));
@@ -92,7 +95,8 @@ mod tests {
 
     #[test]
     fn layers_are_met_between_the_nodes() {
-        let layer = |a, s, thickness_mm| TissueLayer { medium: Medium::new(a, s, 1.4).unwrap(), thickness_mm };
+        let layer =
+            |a, s, thickness_mm| TissueLayer { medium: Medium::new(a, s, 1.4).unwrap(), thickness_mm };
         let stack = Stack::in_air(&[layer(0.25, 4.8, 0.3), layer(0.1, 2.4, f64::INFINITY)]).unwrap();
         let scale_mm = stack.shortest_mean_free_path_mm();
         let table = TabulatedProfile::new(stack.clone(), scale_mm);

@@ -19,7 +19,8 @@ fn light(lines: &str) -> String {
 }
 
 /// The coefficients of a layer.
-const LAYER: &str = "sigma_a_per_mm = [0.1, 0.2, 0.4], sigma_s_reduced_per_mm = [2, 2, 2], refractive_index = 1.4";
+const LAYER: &str =
+    "sigma_a_per_mm = [0.1, 0.2, 0.4], sigma_s_reduced_per_mm = [2, 2, 2], refractive_index = 1.4";
 
 #[test]
 fn scene_files() {
@@ -168,7 +169,9 @@ fn scene_files() {
         ),
         (
             "own-kernel",
-            scene("[material]\nmixed_with = { kernel = { variances_mm2 = [1], weights = [[1, 1, 1]] }, share = 0 }"),
+            scene(
+                "[material]\nmixed_with = { kernel = { variances_mm2 = [1], weights = [[1, 1, 1]] }, share = 0 }",
+            ),
             "is not known",
         ),
         ("space", scene("[material]\nnormal_space = \"world\""), "`world` is not known"),

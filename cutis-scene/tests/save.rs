@@ -80,8 +80,7 @@ fn assert_same_material(a: &Material, b: &Material) {
     for ((place, a), (_, b)) in a.maps().into_iter().zip(b.maps()) {
         assert_same_map(a, b, place);
     }
-    let share =
-        |m: &Material| Some(m.mixed_with.as_ref()?.share.texture.as_ref()?.0.clone());
+    let share = |m: &Material| Some(m.mixed_with.as_ref()?.share.texture.as_ref()?.0.clone());
     assert_same_map(share(a).as_ref(), share(b).as_ref(), "share");
     for (a, b) in a.under.iter().zip(&b.under) {
         assert_same_map(a.texture.as_ref(), b.texture.as_ref(), "under");
@@ -376,20 +375,22 @@ fn materials() -> impl Strategy<Value = Material> {
     let second = prop::option::of((media(), 0.0..1.0f32));
     let numbers = (scatterings(), vectors(0.0..1.0), shares, 0.0..10.0f32, 0.0..1e6f32, (layers, second));
     numbers.prop_map(
-        |(scattering, albedo, [albedo_mix, roughness, f0], rho_s, thickness_scale, (under, second))| Material {
-            scattering,
-            albedo: ColourMap { factor: albedo, texture: None },
-            albedo_mix,
-            rho_s: ScalarMap::constant(rho_s),
-            roughness: ScalarMap::constant(roughness),
-            f0,
-            thickness_scale,
-            under: under.into_iter().map(|factor| ColourMap { factor, texture: None }).collect(),
-            mixed_with: second.map(|(scattering, share)| SecondMedium {
+        |(scattering, albedo, [albedo_mix, roughness, f0], rho_s, thickness_scale, (under, second))| {
+            Material {
                 scattering,
-                share: ScalarMap::constant(share),
-            }),
-            ..Material::default()
+                albedo: ColourMap { factor: albedo, texture: None },
+                albedo_mix,
+                rho_s: ScalarMap::constant(rho_s),
+                roughness: ScalarMap::constant(roughness),
+                f0,
+                thickness_scale,
+                under: under.into_iter().map(|factor| ColourMap { factor, texture: None }).collect(),
+                mixed_with: second.map(|(scattering, share)| SecondMedium {
+                    scattering,
+                    share: ScalarMap::constant(share),
+                }),
+                ..Material::default()
+            }
         },
     )
 }

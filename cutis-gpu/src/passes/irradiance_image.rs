@@ -97,7 +97,11 @@ fn draw(
 ) -> Step {
     let numbers = gpu.uniform("drawn", &drawn);
     let mut bound = inputs.lit_surface();
-    bound.extend([(32, Bound::Texture(inputs.environment.irradiance.view())), (40, Bound::Buffer(&numbers)), (41, Bound::Texture(inputs.material.share.view()))]);
+    bound.extend([
+        (32, Bound::Texture(inputs.environment.irradiance.view())),
+        (40, Bound::Buffer(&numbers)),
+        (41, Bound::Texture(inputs.material.share.view())),
+    ]);
     bound.extend_from_slice(more);
     Step::Draw(Draw {
         pipeline: pipeline.clone(),

@@ -67,7 +67,9 @@ impl Tissue {
             return Err("its layers are of another thickness in each channel; a path has only one".to_owned());
         }
         if last.thickness_mm.is_finite() {
-            return Err("its last layer ends; within a body it is endless (without `thickness_mm`)".to_owned());
+            return Err(
+                "its last layer ends; within a body it is endless (without `thickness_mm`)".to_owned()
+            );
         }
         let layer = |row: &[optics::TissueLayer; 3]| {
             TissueLayer::isotropic(&row.map(|layer| layer.medium), row[0].thickness_mm)
@@ -191,7 +193,8 @@ mod tests {
     fn layers(change: impl Fn(usize, usize, &mut optics::TissueLayer)) -> [Vec<optics::TissueLayer>; 3] {
         [0, 1, 2].map(|channel| {
             let layer = |i: usize| {
-                let medium = Medium::new(0.1 * (i + 1) as f64, 1.0 + channel as f64, 1.4).expect("is physical");
+                let medium =
+                    Medium::new(0.1 * (i + 1) as f64, 1.0 + channel as f64, 1.4).expect("is physical");
                 let mut layer = optics::TissueLayer { medium, thickness_mm: [0.25, f64::INFINITY][i] };
                 change(channel, i, &mut layer);
                 layer
@@ -213,8 +216,13 @@ mod tests {
         let refused = |change: fn(usize, usize, &mut optics::TissueLayer)| {
             Tissue::of_layers(&layers(change)).expect_err("is refused")
         };
-        assert!(refused(|_, i, layer| layer.medium.refractive_index += i as f64).contains("refractive indices"));
-        assert!(refused(|c, i, layer| layer.thickness_mm += (c * i) as f64 - 0.1 * c as f64).contains("another thickness"));
+        assert!(
+            refused(|_, i, layer| layer.medium.refractive_index += i as f64).contains("refractive indices")
+        );
+        assert!(
+            refused(|c, i, layer| layer.thickness_mm += (c * i) as f64 - 0.1 * c as f64)
+                .contains("another thickness")
+        );
         assert!(refused(|_, i, layer| layer.thickness_mm = 1.0 + i as f64).contains("last layer ends"));
         assert!(refused(|_, _, layer| layer.medium.sigma_a_per_mm = -1.0).contains("negative"));
         assert!(Tissue::of_layers(&[vec![], vec![], vec![]]).is_err());

@@ -50,8 +50,10 @@ fn no_speck_is_brighter_than_what_was_drawn() {
     let even = PI * Dipole::new(&medium()).expect("is physical").total() as f32;
     for (jacobian, most) in [(true, 2.0), (false, 1.0)] {
         for count in SampleCount::ALL {
-            let own = ImageSpaceSettings { samples: 4, uniform_samples: 0, jacobian, count, ..Default::default() };
-            let frame = draw(&ball_under_the_sky(4.0, 64), &Settings { width: 64, height: 64, ..settings(own) });
+            let own =
+                ImageSpaceSettings { samples: 4, uniform_samples: 0, jacobian, count, ..Default::default() };
+            let frame =
+                draw(&ball_under_the_sky(4.0, 64), &Settings { width: 64, height: 64, ..settings(own) });
             let brightest = covered(&frame).iter().fold(0.0f32, |most, e| most.max(e.x));
             assert!(brightest < 1.001 * most * even, "{jacobian} {count}: {brightest} of {even}");
         }

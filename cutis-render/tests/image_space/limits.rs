@@ -53,7 +53,8 @@ fn triangles_may_be_split() {
         ("texture-space", by(TechniqueName::TextureSpace)),
     ] {
         let [a, b] = [&whole, &cut].map(|scene| exitances(&draw(scene, &settings)));
-        let apart = a.iter().zip(&b).map(|(a, b)| (*a - *b).abs().max_element()).sum::<f32>() / a.len() as f32;
+        let apart =
+            a.iter().zip(&b).map(|(a, b)| (*a - *b).abs().max_element()).sum::<f32>() / a.len() as f32;
         let level = mean(&a).x;
         eprintln!("{name}: {apart} apart, of {level}");
         assert!(level > 0.1 && apart < 1e-3 * level, "{name}: {apart} of {level}");

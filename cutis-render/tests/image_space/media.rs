@@ -52,15 +52,21 @@ fn every_place_is_of_the_mixture_that_the_map_says() {
         // The table holds R to 1e-4; half way two neighbours stand for the mixture between them.
         assert!((found / expected - 1.0).abs() < 3e-3, "{share}: {found} against {expected}");
     }
-    let other = Settings { technique: TechniqueName::TextureSpace, ..settings(ImageSpaceSettings::default()) };
-    let told = |settings| draw(&scene, &settings).warnings.iter().any(|words| words.contains("second medium"));
+    let other =
+        Settings { technique: TechniqueName::TextureSpace, ..settings(ImageSpaceSettings::default()) };
+    let told =
+        |settings| draw(&scene, &settings).warnings.iter().any(|words| words.contains("second medium"));
     assert!(told(other) && !told(settings(ImageSpaceSettings::default())));
 }
 
 /// A thin absorbing layer over a clearer one, as of skin; blue does not get far.
 fn skin_of_two_layers() -> [Vec<TissueLayer>; 3] {
-    let layer = |a, s, thickness_mm| TissueLayer { medium: Medium::new(a, s, 1.4).expect("is physical"), thickness_mm };
-    [[0.1, 0.02], [0.25, 0.1], [0.8, 0.4]].map(|[a, b]| vec![layer(a, 4.8, 0.5), layer(b, 2.4, f64::INFINITY)])
+    let layer = |a, s, thickness_mm| TissueLayer {
+        medium: Medium::new(a, s, 1.4).expect("is physical"),
+        thickness_mm,
+    };
+    [[0.1, 0.02], [0.25, 0.1], [0.8, 0.4]]
+        .map(|[a, b]| vec![layer(a, 4.8, 0.5), layer(b, 2.4, f64::INFINITY)])
 }
 
 /// Layers are sampled by their own profile, not by Gaussians that were fitted to it.
@@ -76,18 +82,26 @@ fn layers_are_sampled_as_they_are() {
             // The kernel has the total of the fit, which keeps it to 1e-3 or so; the rest is interpolation.
             let expected = stack.at_mm(f64::from(r_mm)) as f32;
             let off = (found[channel] - expected).abs();
-            assert!(off < 4e-3 * expected + 1e-6, "{r_mm} mm, {channel}: {} against {expected}", found[channel]);
+            assert!(
+                off < 4e-3 * expected + 1e-6,
+                "{r_mm} mm, {channel}: {} against {expected}",
+                found[channel]
+            );
         }
     }
     let own = ImageSpaceSettings { samples: 256, count: SampleCount::All, ..ImageSpaceSettings::default() };
     let pixels = exitances(&draw(&plane(material, Vec3::Z * 1000.0, sun(1.0)), &settings(own)));
     let totals = stacks.map(|stack| stack.total() as f32);
     // The middle, whose samples do not meet the border of the image.
-    let middle: Vec<Vec3> = (16..32).flat_map(|y| (16..32).map(move |x| y * 48 + x)).map(|i| pixels[i]).collect();
+    let middle: Vec<Vec3> =
+        (16..32).flat_map(|y| (16..32).map(move |x| y * 48 + x)).map(|i| pixels[i]).collect();
     let found = mean(&middle);
     eprintln!("layers: {found}, expected {totals:?}");
     // Samples are drawn by the mean of three profiles; their noise is that of 80,000.
-    assert!((found / Vec3::from_array(totals) - 1.0).abs().max_element() < 5e-3, "{found} against {totals:?}");
+    assert!(
+        (found / Vec3::from_array(totals) - 1.0).abs().max_element() < 5e-3,
+        "{found} against {totals:?}"
+    );
 }
 
 /// A relief that tilts half of the plane by 45 degrees takes in as much less light.

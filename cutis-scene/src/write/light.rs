@@ -57,8 +57,9 @@ fn one(light: &Light, files: &mut Files) -> Result<String, SceneError> {
             put("radius_mm", number(*radius_mm));
         }
         Light::Projector(projector) => {
-            let Projector { position_mm, axes, tan_half_height, image, intensity_w_per_sr, radius_mm, .. } =
-                projector;
+            let Projector {
+                position_mm, axes, tan_half_height, image, intensity_w_per_sr, radius_mm, ..
+            } = projector;
             put("kind", quoted("projector"));
             put("path", quoted(&picture(image, files)?));
             put("position_mm", vector(*position_mm));

@@ -71,7 +71,7 @@ impl Job {
                 detail: HeadDetail::default(),
                 material: None,
                 longest_side_mm: None,
-        time_s: 0.0,
+                time_s: 0.0,
             },
             entries,
             reference,

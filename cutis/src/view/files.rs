@@ -104,7 +104,7 @@ mod tests {
         let now = SceneSource {
             material: None,
             longest_side_mm: None,
-        time_s: 0.0,
+            time_s: 0.0,
             file: Some("head.obj".into()),
             options: ReadOptions::default(),
             environment: None,

@@ -243,11 +243,7 @@ impl<'a> Keys<'a> {
     }
 
     /// Two numbers within limits.
-    pub(super) fn pair_in(
-        &self,
-        key: &str,
-        limits: RangeInclusive<f32>,
-    ) -> Result<Option<Vec2>, SceneError> {
+    pub(super) fn pair_in(&self, key: &str, limits: RangeInclusive<f32>) -> Result<Option<Vec2>, SceneError> {
         let Some(numbers) = self.doubles(key, 2)? else { return Ok(None) };
         let [x, y] = numbers[..] else {
             return Err(self.error(key, format!("must be a list of two numbers, found {}", numbers.len())));

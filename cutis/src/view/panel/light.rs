@@ -8,7 +8,8 @@ use eframe::egui::Ui;
 /// Shows it.
 pub fn show(viewer: &mut Viewer, ui: &mut Ui) {
     if viewer.scene.lights.iter().any(Light::moves) {
-        ui.checkbox(&mut viewer.is_playing, "lights move").on_hover_text("time goes on for images that drift");
+        ui.checkbox(&mut viewer.is_playing, "lights move")
+            .on_hover_text("time goes on for images that drift");
         let hint = "how long lights that move have moved";
         linear("time [s]", hint, 0.0..=60.0, 0.0).show(ui, &mut viewer.looks[viewer.edited].time_s);
     }

@@ -3,4 +3,5 @@
 pub mod drive;
 mod random;
 mod techniques;
+mod time;
 mod views;

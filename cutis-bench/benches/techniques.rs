@@ -1,6 +1,6 @@
-//! Image-space sampling of the scanned head at the size of Mertens et al. 2003, 500 × 500 pixels, on the processor and on a
-//! graphics adapter; and its error against the simulated truth and its grain for each number of samples, beside texture-space
-//! with textures of several sizes.
+//! Every technique on the scanned head at the size of Mertens et al. 2003, 500 × 500 pixels, on the processor and on a graphics
+//! adapter, with its error against the simulated truth: image-space with its grain for each number of samples, beside
+//! texture-space with textures of several sizes.
 #![allow(missing_docs, reason = "criterion's macros make public functions")]
 
 mod common;
@@ -29,7 +29,9 @@ fn rivals() -> Vec<(String, Settings)> {
     let by_samples = |samples: u32| (format!("image-space, {samples} samples"), sampled(samples));
     let spread =
         |size: u32| (format!("texture-space, {size}²"), Settings { irradiance_size: size, ..common() });
-    SAMPLES.map(by_samples).into_iter().chain(TEXTURES.map(spread)).collect()
+    let usual = |technique: TechniqueName| (technique.to_string(), Settings { technique, ..common() });
+    let others = [TechniqueName::Wrap, TechniqueName::DepthAbsorption, TechniqueName::TextureBlur].map(usual);
+    others.into_iter().chain(TEXTURES.map(spread)).chain(SAMPLES.map(by_samples)).collect()
 }
 
 fn sampled(samples: u32) -> Settings {
@@ -52,7 +54,7 @@ fn scan() -> Option<Scene> {
 
 fn frames(criterion: &mut Criterion) {
     let Some(scene) = scan() else { return };
-    let mut group = criterion.benchmark_group("image-space 500 x 500");
+    let mut group = criterion.benchmark_group("techniques, 500 x 500");
     group.sample_size(10).sampling_mode(SamplingMode::Flat);
     group.warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(5));
     for (name, settings) in rivals() {
@@ -74,12 +76,16 @@ fn tables() {
     let renderer = GpuRenderer::new(Adapters::Any);
     let truth = truth();
     let adapter = renderer.as_ref().map_or("no adapter".to_owned(), GpuRenderer::adapter);
-    eprintln!("\n| technique | processor, ms | of it by the technique | {adapter}, ms a frame | relative RMSE | grain |");
+    eprintln!(
+        "\n| technique | processor, ms | of it by the technique | {adapter}, ms a frame | relative RMSE | grain |"
+    );
     eprintln!("|---|---:|---:|---:|---:|---:|");
     let smooth = judged(&scene, &sampled(1024));
     for (name, settings) in rivals() {
         let (whole, own) = on_the_processor(&scene, &settings);
-        let on_adapter = renderer.as_ref().map_or_else(|_| "–".to_owned(), |renderer| on_the_adapter(renderer, &scene, &settings));
+        let on_adapter = renderer
+            .as_ref()
+            .map_or_else(|_| "–".to_owned(), |renderer| on_the_adapter(renderer, &scene, &settings));
         let light = judged(&scene, &settings);
         let error = 100.0 * apart(&averaged(&light), &truth);
         let grain = match settings.technique {
@@ -99,7 +105,8 @@ fn on_the_processor(scene: &Scene, settings: &Settings) -> (f64, f64) {
     };
     let (whole, frame) = (0..3).map(|_| timed()).min_by_key(|(time, _)| *time).expect("three were drawn");
     let own = ["blur", "transmission", "irradiance image", "resolve"];
-    let own: Duration = frame.passes.iter().filter(|pass| own.contains(&pass.name.as_str())).map(|pass| pass.time).sum();
+    let own: Duration =
+        frame.passes.iter().filter(|pass| own.contains(&pass.name.as_str())).map(|pass| pass.time).sum();
     (whole.as_secs_f64() * 1e3, own.as_secs_f64() * 1e3)
 }
 
@@ -129,8 +136,13 @@ fn truth() -> Vec<f64> {
 /// Light from below the surface in a picture four times as wide and high as the truth.
 fn judged(scene: &Scene, settings: &Settings) -> Vec<f64> {
     let side = FINER * JUDGED.1;
-    let settings =
-        Settings { width: side, height: side, shadow_samples: 16, aovs: vec![Aov::Specular], ..settings.clone() };
+    let settings = Settings {
+        width: side,
+        height: side,
+        shadow_samples: 16,
+        aovs: vec![Aov::Specular],
+        ..settings.clone()
+    };
     let frame = draw(scene, &settings);
     let pairs = frame.pixels.iter().zip(&frame.layers[0].pixels);
     pairs.flat_map(|(all, part)| (*all - *part).truncate().to_array()).map(f64::from).collect()

@@ -1,16 +1,20 @@
 //! A profile that is asked often: its values are computed once and looked up.
 //!
 //! Layers have no closed form over the radius: every value is an integral over all frequencies. Between nodes, which lie evenly
-//! in x = ln(1 + r/scale), ln R is a cubic through the four nearest (Lagrange).
+//! in x = ln(1 + r/scale), ln R is a cubic through the four nearest (Lagrange); R itself where one of them is not above 0, as
+//! diffusion has it around layers thinner than a mean free path.
 
 use crate::Profile;
+use core::f64::consts::PI;
 
 /// Distance of the nodes in x.
 const STEP: f64 = 1.0 / 32.0;
 /// Nodes at most: out to 10⁷ times the scale.
 const NODES_MAX: usize = 512;
-/// The table ends where so small a part of all light is left, by π r² R: less than any sampler draws from.
+/// The table ends where so small a part of all light is left, by π r² R: less than any sampler draws from …
 const NEGLIGIBLE: f64 = 1e-9;
+/// … over so many nodes: R may pass through 0.
+const NEGLIGIBLE_NODES: usize = 8;
 
 /// A profile with a table of its values.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,25 +22,27 @@ pub struct TabulatedProfile<P> {
     profile: P,
     total: f64,
     scale_mm: f64,
-    /// ln R at the nodes, R in 1/mm².
-    ln_values: Vec<f64>,
+    /// R at the nodes, 1/mm².
+    values: Vec<f64>,
 }
 
 impl<P: Profile> TabulatedProfile<P> {
     /// The table of a profile that is finite under the beam; `scale_mm` is the shortest length in it, as the mean free path of
     /// the topmost layer.
     ///
-    /// Values are within 1e-5 of themselves; beyond the table, where 1e-9 of the light is left, they are 0.
+    /// Values are within 1e-5 of themselves where R is above 0; beyond the table, where 1e-9 of the light is left, they are 0.
     pub fn new(profile: P, scale_mm: f64) -> Self {
         let total = profile.total();
-        let radius_mm = |i: usize| scale_mm * (STEP * i as f64).exp_m1();
-        let node = |i: usize| {
-            let (r_mm, value) = (radius_mm(i), profile.at_mm(radius_mm(i)));
-            let is_left = i < 8 || core::f64::consts::PI * r_mm * r_mm * value > NEGLIGIBLE * total;
-            (value > 0.0 && is_left).then(|| value.ln())
-        };
-        let ln_values = (0..NODES_MAX).map_while(node).collect();
-        Self { profile, total, scale_mm, ln_values }
+        let mut values = Vec::new();
+        let mut negligible = 0;
+        while values.len() < NODES_MAX && negligible < NEGLIGIBLE_NODES {
+            let r_mm = scale_mm * (STEP * values.len() as f64).exp_m1();
+            let value = profile.at_mm(r_mm);
+            let is_left = r_mm < scale_mm || PI * r_mm * r_mm * value.abs() > NEGLIGIBLE * total;
+            negligible = if is_left { 0 } else { negligible + 1 };
+            values.push(value);
+        }
+        Self { profile, total, scale_mm, values }
     }
 }
 
@@ -47,21 +53,30 @@ impl<P: Profile> Profile for TabulatedProfile<P> {
 
     fn at_mm(&self, r_mm: f64) -> f64 {
         let x = (r_mm.max(0.0) / self.scale_mm).ln_1p() / STEP;
-        let last = self.ln_values.len() as f64 - 1.0;
+        let last = self.values.len() as f64 - 1.0;
         if !(x <= last) || last < 3.0 {
             return 0.0;
         }
         // The four nodes around x, or the outermost four.
-        let first = (x as usize).saturating_sub(1).min(self.ln_values.len() - 4);
-        let [a, b, c, d] = [0, 1, 2, 3].map(|i| self.ln_values[first + i]);
+        let first = (x as usize).saturating_sub(1).min(self.values.len() - 4);
+        let nodes = [0, 1, 2, 3].map(|i| self.values[first + i]);
         let t = x - first as f64;
-        let [u, v, w] = [t - 1.0, t - 2.0, t - 3.0];
-        (-a * u * v * w / 6.0 + b * t * v * w / 2.0 - c * t * u * w / 2.0 + d * t * u * v / 6.0).exp()
+        if nodes.iter().all(|&value| value > 0.0) {
+            cubic(nodes.map(f64::ln), t).exp()
+        } else {
+            cubic(nodes, t)
+        }
     }
 
     fn total(&self) -> f64 {
         self.total
     }
+}
+
+/// The cubic through values at 0, 1, 2 and 3.
+fn cubic([a, b, c, d]: [f64; 4], t: f64) -> f64 {
+    let [u, v, w] = [t - 1.0, t - 2.0, t - 3.0];
+    -a * u * v * w / 6.0 + b * t * v * w / 2.0 - c * t * u * w / 2.0 + d * t * u * v / 6.0
 }
 
 #[cfg(test)]
@@ -103,6 +118,24 @@ mod tests {
         for r_mm in [0.003, 0.11, 0.52, 1.7, 4.1] {
             let (found, exact) = (table.at_mm(r_mm), stack.at_mm(r_mm));
             assert!((found / exact - 1.0).abs() < 1e-5, "{r_mm}: {found} {exact}");
+        }
+    }
+
+    /// A layer of a quarter of its mean free path has a ring of negative R, with light beyond it.
+    #[test]
+    fn light_beyond_a_negative_ring_is_kept() {
+        let layer =
+            |a, s, thickness_mm| TissueLayer { medium: Medium::new(a, s, 1.4).unwrap(), thickness_mm };
+        let stack = Stack::in_air(&[layer(0.05, 5.0, 0.05), layer(0.05, 1.0, f64::INFINITY)]).unwrap();
+        let table = TabulatedProfile::new(stack.clone(), stack.shortest_mean_free_path_mm());
+        assert!(stack.at_mm(0.4) < 0.0 && stack.at_mm(2.0) > 0.0);
+        for i in 0..40 {
+            let r_mm = 1e-3 * 1.26f64.powi(i);
+            let exact = stack.at_mm(r_mm);
+            let off = (table.at_mm(r_mm) - exact).abs();
+            // Where R passes through 0, of the light within the radius.
+            let light = PI * r_mm * r_mm * off / stack.total();
+            assert!(off < 1e-5 * exact.abs() || light < 1e-5, "{r_mm}: {off} of {exact}");
         }
     }
 

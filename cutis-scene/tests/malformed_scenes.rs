@@ -149,23 +149,59 @@ fn scene_files() {
         ("mixture", scene("[material]\nmixed_with = \"marble\""), "must be a table"),
         (
             "nothing-mixed",
-            scene("[material]\nmixed_with = { share = 0.5 }"),
+            scene("[material]\npreset = \"marble\"\nmixed_with = { share = 0.5 }"),
             "`material.mixed_with.medium`: is missing",
         ),
         (
             "no-share",
-            scene("[material]\nmixed_with = { preset = \"marble\" }"),
+            scene("[material]\npreset = \"marble\"\nmixed_with = { preset = \"marble\" }"),
             "`material.mixed_with.share`: is missing",
         ),
         (
             "all-of-it",
-            scene("[material]\nmixed_with = { preset = \"marble\", share = 1.5 }"),
+            scene("[material]\npreset = \"marble\"\nmixed_with = { preset = \"marble\", share = 1.5 }"),
             "must be 0 to 1, got 1.5",
         ),
         (
+            "nothing-to-mix-with",
+            scene("[material]\nmixed_with = { preset = \"marble\", share = 0.5 }"),
+            "key `material.mixed_with`: has no medium to be mixed with: `three-layer-skin` is a kernel",
+        ),
+        (
+            "layers-mixed",
+            scene(&format!(
+                "[material]\nlayers = [{{ {LAYER} }}]\nmixed_with = {{ preset = \"marble\", share = 0.5 }}"
+            )),
+            "the tissue has layers; only media mix",
+        ),
+        (
+            "mistyped-second",
+            scene("[material]\npreset = \"marble\"\nmixed_with = { preset = \"ketchpu\", share = 0.5 }"),
+            "key `material.mixed_with.preset`: no preset is called \"ketchpu\"; the nearest name is \"ketchup\"",
+        ),
+        (
+            "clear-second",
+            scene(
+                "[material]\npreset = \"marble\"\nmixed_with = { medium = { sigma_a_per_mm = [1, 1, 1], \
+                 sigma_s_reduced_per_mm = [1, 1e-30, 1] }, share = 0.5 }",
+            ),
+            "`material.mixed_with.medium.sigma_s_reduced_per_mm`: must be 0.000000001 to 10000",
+        ),
+        (
+            "jump-of-indices",
+            scene(
+                "[material]\nlayers = [{ sigma_a_per_mm = [1, 1, 1], sigma_s_reduced_per_mm = [1, 1, 1], thickness_mm = 1, \
+                 refractive_index = 1.0 }, { sigma_a_per_mm = [1, 1, 1], sigma_s_reduced_per_mm = [1, 1, 1], \
+                 refractive_index = [1.5, 2.5, 1] }]",
+            ),
+            "`material.layers[1].refractive_index`: is 2.5 under a layer of 1; neighbours may differ by a factor of 2",
+        ),
+        (
             "mixed-kernel",
-            scene("[material]\nmixed_with = { preset = \"three-layer-skin\", share = 0.5 }"),
-            "`three-layer-skin` is a kernel; only media can be mixed",
+            scene(
+                "[material]\npreset = \"marble\"\nmixed_with = { preset = \"three-layer-skin\", share = 0.5 }",
+            ),
+            "key `material.mixed_with.preset`: `three-layer-skin` is a kernel; only media mix",
         ),
         (
             "own-kernel",
@@ -174,7 +210,7 @@ fn scene_files() {
             ),
             "is not known",
         ),
-        ("space", scene("[material]\nnormal_space = \"world\""), "`world` is not known"),
+        ("space", scene("[material]\npreset = \"marble\"\nnormal_space = \"world\""), "`world` is not known"),
         ("lonely", scene("[material]\nnormal_strength = 2"), "has no `normal` to apply to"),
         (
             "channel",

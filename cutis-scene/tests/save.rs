@@ -259,6 +259,7 @@ fn images_made_by_code_become_files() {
     ];
     material.rho_s = ScalarMap { offset: 0.25, gain: 0.5, texture: Some((data.clone(), 2)) };
     let share = ScalarMap { offset: 1.0, gain: -1.0, texture: Some((data.clone(), 1)) };
+    material.scattering = Scattering::Preset("skin1".to_owned());
     material.mixed_with = Some(SecondMedium { scattering: Scattering::Preset("marble".to_owned()), share });
     material.roughness = ScalarMap { offset: 0.1, gain: 0.3, texture: Some((data, 1)) };
     let map = texture(Texels::LinearF32(vec![[0.1, 20.0, 3.0, 1.0], [0.0, 0.5, 1e-3, 1.0]]));
@@ -376,6 +377,7 @@ fn materials() -> impl Strategy<Value = Material> {
     let numbers = (scatterings(), vectors(0.0..1.0), shares, 0.0..10.0f32, 0.0..1e6f32, (layers, second));
     numbers.prop_map(
         |(scattering, albedo, [albedo_mix, roughness, f0], rho_s, thickness_scale, (under, second))| {
+            let is_medium = matches!(&scattering, Scattering::Medium(_));
             Material {
                 scattering,
                 albedo: ColourMap { factor: albedo, texture: None },
@@ -385,7 +387,7 @@ fn materials() -> impl Strategy<Value = Material> {
                 f0,
                 thickness_scale,
                 under: under.into_iter().map(|factor| ColourMap { factor, texture: None }).collect(),
-                mixed_with: second.map(|(scattering, share)| SecondMedium {
+                mixed_with: second.filter(|_| is_medium).map(|(scattering, share)| SecondMedium {
                     scattering,
                     share: ScalarMap::constant(share),
                 }),

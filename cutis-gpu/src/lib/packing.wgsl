@@ -41,3 +41,15 @@ fn unit_or(v: vec3f, otherwise: vec3f) -> vec3f {
     }
     return v * inverseSqrt(length2);
 }
+
+/// Two unit vectors at right angles to a unit vector and to each other (Duff et al. 2017, "Building an Orthonormal Basis,
+/// Revisited", JCGT 6(1)), as the processor's vectors have them.
+fn orthonormal_pair(n: vec3f) -> array<vec3f, 2> {
+    let sign = select(-1.0, 1.0, n.z >= 0.0);
+    let a = -1.0 / (sign + n.z);
+    let b = n.x * n.y * a;
+    return array<vec3f, 2>(
+        vec3f(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
+        vec3f(b, sign + n.y * n.y * a, -n.y),
+    );
+}

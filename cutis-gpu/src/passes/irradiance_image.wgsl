@@ -5,9 +5,11 @@
 @group(0) @binding(41) var share_map: texture_2d<f32>;
 @group(0) @binding(32) var irradiance_map: texture_2d<f32>;
 
+const HALF_PI: f32 = 1.5707964;
+
 struct Image {
-    /// Place in xyz, mm; in w, packed, a normal, that of the triangle or of the smooth surface, and the share of the second
-    /// medium.
+    /// Place in xyz, mm; in w, packed, a normal, that of the triangle or of the smooth surface, and the place in the row
+    /// of mixtures.
     @location(0) place: vec4u,
     /// Irradiance, W/m², and the number of the object and one in w.
     @location(1) light: vec4f,
@@ -29,7 +31,9 @@ fn light_image(seen: Seen) -> Image {
     let flat_normal = unit_or(across * select(-1.0, 1.0, dot(across, smooth_normal) > 0.0), smooth_normal);
     let normal = select(flat_normal, smooth_normal, drawn.smooth_plane != 0u);
     let share = clamp(scalar_at(material.share, textureSampleLevel(share_map, repeating, seen.uv, 0.0)), 0.0, 1.0);
-    let place = vec4u(bitcast<vec3u>(seen.position_mm), pack_unit_and_share(normal, share));
+    // Its place in the row of mixtures, which lie closer at both ends.
+    let mixture = asin(sqrt(share)) / HALF_PI;
+    let place = vec4u(bitcast<vec3u>(seen.position_mm), pack_unit_and_share(normal, mixture));
     return Image(place, vec4f(irradiance_at(seen, smooth_normal), f32(drawn.object + 1u)));
 }
 

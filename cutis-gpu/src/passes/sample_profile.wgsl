@@ -82,8 +82,8 @@ struct Texel {
     position_mm: vec3f,
     normal: vec3f,
     irradiance_w_per_m2: vec3f,
-    /// Share of the second medium.
-    share: f32,
+    /// Place in the row of mixtures, 0 to 1.
+    mixture: f32,
 }
 
 struct Gathered {
@@ -99,7 +99,7 @@ fn sample_profile(@builtin(position) position: vec4f) -> Gathered {
         return Gathered(vec4f(0.0), vec4f(0.0));
     }
     let pixel = sample.x % 4u + 4u * (sample.y % 4u);
-    let profile = (own.object - 1u) * gathering.mixtures + mixture_at(own.share, pixel);
+    let profile = (own.object - 1u) * gathering.mixtures + mixture_at(own.mixture, pixel);
     let first = (profile * INTERLEAVED_PIXELS + pixel) * gathering.place_count;
     var transmitted = vec3f(0.0);
     for (var image = 0u; image < gathering.light_count; image++) {
@@ -108,11 +108,11 @@ fn sample_profile(@builtin(position) position: vec4f) -> Gathered {
     return Gathered(vec4f(found_in_image(CAMERA, own, profile, first), 1.0), vec4f(transmitted, 1.0));
 }
 
-/// Which of the mixtures a pixel takes for a share of the second medium.
-fn mixture_at(share: f32, pixel: u32) -> u32 {
+/// Which of the mixtures a pixel takes at a place in their row.
+fn mixture_at(place: f32, pixel: u32) -> u32 {
     var ranks = RANKS;
     let rank = (ranks[pixel] + gathering.round) % INTERLEAVED_PIXELS;
-    return u32(share * f32(gathering.mixtures - 1u) + (f32(rank) + 0.5) / 16.0);
+    return u32(place * f32(gathering.mixtures - 1u) + (f32(rank) + 0.5) / 16.0);
 }
 
 /// In place of the number of a light's image: the camera's.
@@ -134,7 +134,7 @@ fn found_in_image(image: u32, own: Texel, profile: u32, first: u32) -> vec3f {
         }
         valid++;
         let r = profile_at(profile, length(offset_mm + seen.from_point_mm));
-        if all(r == vec3f(0.0)) || shown_before(image, seen, own.object) {
+        if all(r == vec3f(0.0)) || place.density_per_mm2 <= 0.0 || shown_before(image, seen, own.object) {
             continue;
         }
         var area = 1.0;
@@ -143,14 +143,14 @@ fn found_in_image(image: u32, own: Texel, profile: u32, first: u32) -> vec3f {
         }
         let drawn = profile_at(profile, length(offset_mm));
         let most = select(1.0, MAX_GAIN, gathering.jacobian != 0u);
-        let found = min(r * area, drawn * most);
+        let found = clamp(r * area, -abs(drawn) * most, abs(drawn) * most);
         sum += found * seen.irradiance_w_per_m2 / place.density_per_mm2;
     }
     // Where lights look for what the camera misses, it must not be made up for: what they miss as well is dark.
     if gathering.count_valid != 0u && gathering.light_count == 0u && valid > 0u {
-        return sum * (f32(gathering.place_count) / f32(valid));
+        return max(sum * (f32(gathering.place_count) / f32(valid)), vec3f(0.0));
     }
-    return sum;
+    return max(sum, vec3f(0.0));
 }
 
 fn shown_before(image: u32, seen: SeenThere, object: u32) -> bool {
@@ -291,16 +291,4 @@ fn jacobian(view: View, body_mm: vec3f, body_normal: vec3f, plane_mm: vec3f, pla
     }
     let cosines = abs(dot(plane_normal, dir)) / max(abs(dot(body_normal, dir)), 1e-6);
     return min(farther * farther * cosines, MAX_JACOBIAN);
-}
-
-/// Two unit vectors at right angles to a unit vector and to each other (Duff et al. 2017, "Building an Orthonormal Basis,
-/// Revisited", JCGT 6(1)), as the processor's vectors have them.
-fn orthonormal_pair(n: vec3f) -> array<vec3f, 2> {
-    let sign = select(-1.0, 1.0, n.z >= 0.0);
-    let a = -1.0 / (sign + n.z);
-    let b = n.x * n.y * a;
-    return array<vec3f, 2>(
-        vec3f(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
-        vec3f(b, sign + n.y * n.y * a, -n.y),
-    );
 }

@@ -1,9 +1,11 @@
 //! What a person should know of a scene that is drawn by a technique.
 
+use crate::prepare::kernel::stacks;
 use crate::prepare::mixtures::media_of;
 use crate::settings::TechniqueName;
-use cutis_optics::Dipole;
-use cutis_scene::{Object, Scene};
+use cutis_optics::{Dipole, Medium, Stack};
+use cutis_scene::{Object, Scattering, Scene};
+use std::collections::BTreeMap;
 
 /// All of it, in words.
 pub fn warnings(scene: &Scene, technique: TechniqueName) -> Vec<String> {
@@ -11,12 +13,30 @@ pub fn warnings(scene: &Scene, technique: TechniqueName) -> Vec<String> {
         let name = &object.name;
         format!("'{name}' is not a closed surface: light that enters may find no way out, and thin parts stay dark")
     });
-    let media = scene.objects.iter().filter_map(|object| media_of(&object.material.scattering)).flatten();
-    let invalid = media.filter_map(|medium| {
-        let validity = Dipole::new(&medium).ok()?.validity();
-        (!validity.is_good()).then(|| validity.to_string())
+    let invalid = scene.objects.iter().flat_map(|object| {
+        let second = object.material.mixed_with.as_ref().map(|second| &second.scattering);
+        std::iter::once(&object.material.scattering).chain(second).flat_map(beyond_the_model)
     });
     open.chain(invalid).chain(left_out(scene, technique)).collect()
+}
+
+/// What diffusion is not good for.
+fn beyond_the_model(scattering: &Scattering) -> Vec<String> {
+    let of_media = |medium: Medium| {
+        let validity = Dipole::new(&medium).ok()?.validity();
+        (!validity.is_good()).then(|| validity.to_string())
+    };
+    match scattering {
+        Scattering::Layers(channels) => stacks(channels).map_or_else(
+            |_| Vec::new(),
+            |stacks| {
+                // Each layer once, whichever channels it is too thin for.
+                let thin: BTreeMap<_, _> = stacks.iter().flat_map(Stack::too_thin).collect();
+                thin.into_iter().map(|(layer, thin)| format!("layer {layer}: {thin}")).collect()
+            },
+        ),
+        scattering => media_of(scattering).into_iter().flatten().filter_map(of_media).collect(),
+    }
 }
 
 /// Says so where a material has what a technique does not know.

@@ -5,6 +5,7 @@ use cutis_optics::presets::PresetMaterial;
 use cutis_optics::{Medium, RgbGaussianSum, Stack, TissueLayer, fit_rgb, presets, rgb_kernel};
 use cutis_scene::{Material, Scattering};
 use glam::Vec3;
+use std::error::Error;
 
 /// The diffusion kernel as the passes want it.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,9 +28,9 @@ pub fn kernel_of(material: &Material, gaussians: usize) -> Result<Kernel, Render
     let sum = match &material.scattering {
         Scattering::Preset(name) => {
             let preset = presets::find(name).map_err(|e| bad(e.to_string()))?;
-            preset.kernel(gaussians).map_err(|e| bad(e.to_string()))?
+            preset.kernel(gaussians).map_err(|e| bad(in_full(&e)))?
         }
-        Scattering::Medium(media) => rgb_kernel(media, gaussians).map_err(|e| bad(e.to_string()))?,
+        Scattering::Medium(media) => rgb_kernel(media, gaussians).map_err(|e| bad(in_full(&e)))?,
         Scattering::Layers(channels) => layered_kernel(channels, gaussians).map_err(bad)?,
         Scattering::Kernel(sum) => sum.clone(),
     };
@@ -41,7 +42,13 @@ pub fn kernel_of(material: &Material, gaussians: usize) -> Result<Kernel, Render
 /// The kernel of layers, seen through the multipole.
 fn layered_kernel(channels: &[Vec<TissueLayer>; 3], gaussians: usize) -> Result<RgbGaussianSum, String> {
     let [red, green, blue] = stacks(channels)?;
-    Ok(fit_rgb([&red, &green, &blue], gaussians).map_err(|e| e.to_string())?.kernel)
+    Ok(fit_rgb([&red, &green, &blue], gaussians).map_err(|e| in_full(&e))?.kernel)
+}
+
+/// An error and what caused it.
+fn in_full(error: &dyn Error) -> String {
+    let causes = std::iter::successors(error.source(), |&cause| cause.source());
+    causes.fold(error.to_string(), |words, cause| format!("{words}: {cause}"))
 }
 
 /// Red, green and blue of layers.
@@ -49,7 +56,7 @@ fn layered_kernel(channels: &[Vec<TissueLayer>; 3], gaussians: usize) -> Result<
 /// # Errors
 /// In words, if a layer cannot be.
 pub fn stacks(channels: &[Vec<TissueLayer>; 3]) -> Result<[Stack; 3], String> {
-    let stack = |channel: usize| Stack::in_air(&channels[channel]).map_err(|e| e.to_string());
+    let stack = |channel: usize| Stack::in_air(&channels[channel]).map_err(|e| in_full(&e));
     Ok([stack(0)?, stack(1)?, stack(2)?])
 }
 

@@ -7,9 +7,10 @@ use crate::RenderError;
 use crate::technique::image_space::ImageSpaceSettings;
 use cutis_optics::{Medium, presets};
 use cutis_scene::{Material, Scattering};
+use std::f64::consts::FRAC_PI_2;
 
 /// Mixtures of two media, from the first alone to the second alone. Neighbours share pixels between them.
-pub const MIXTURES: u32 = 16;
+pub const MIXTURES: u32 = 32;
 
 /// Ranks of the pixels of an ordered dither (Bayer 1973, not opened).
 pub const RANKS: [u32; 16] = [0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5];
@@ -30,18 +31,29 @@ pub fn mixtures(material: &Material, count: u32) -> Result<Vec<Material>, Render
         return Err(RenderError::BadMaterial { material: material.name.clone(), reason });
     };
     let mixture = |number: u32| {
-        let share = f64::from(number) / f64::from(count - 1).max(1.0);
+        let share = share_of(f64::from(number) / f64::from(count - 1).max(1.0));
         let media = [0, 1, 2].map(|channel| own[channel].mixed(&other[channel], share));
         Material { scattering: Scattering::Medium(media), mixed_with: None, ..material.clone() }
     };
     Ok((0..count).map(mixture).collect())
 }
 
+/// Share of the second medium at a place in the row of mixtures, 0 to 1. Reflectance falls as the square root of the absorption
+/// where that begins, at either end: mixtures lie closer there.
+fn share_of(place: f64) -> f64 {
+    (FRAC_PI_2 * place).sin().powi(2)
+}
+
+/// The place of a share.
+fn place_of(share: f32) -> f32 {
+    share.sqrt().asin() / std::f32::consts::FRAC_PI_2
+}
+
 /// Which of so many mixtures a pixel takes for a share of the second medium: one of the two nearest, so that sixteen pixels
 /// have the share between them, and every pixel over sixteen rounds.
 pub fn mixture_at(share: f32, count: u32, [x, y]: [u32; 2], settings: &ImageSpaceSettings) -> usize {
     let rank = (RANKS[(x % 4 + 4 * (y % 4)) as usize] + settings.round) % 16;
-    (share * (count - 1) as f32 + (rank as f32 + 0.5) / 16.0) as usize
+    (place_of(share) * (count - 1) as f32 + (rank as f32 + 0.5) / 16.0) as usize
 }
 
 /// The media that light is scattered by, if they are known.
@@ -85,13 +97,20 @@ mod tests {
     }
 
     #[test]
+    fn places_are_found_again() {
+        for share in [0.0f32, 1e-4, 0.03, 0.5, 0.97, 1.0] {
+            assert!((share_of(f64::from(place_of(share))) - f64::from(share)).abs() < 1e-6, "{share}");
+        }
+    }
+
+    #[test]
     fn a_kernel_does_not_mix() {
         let skin = Material { scattering: Scattering::Preset("three-layer-skin".to_owned()), ..marble() };
         let refused = mixtures(&skin, 2).expect_err("is a kernel").to_string();
         assert!(refused.contains("only media mix"), "{refused}");
     }
 
-    /// Sixteen pixels, and sixteen rounds of one, have any share between them to half a rank; ends are pure.
+    /// Sixteen pixels, and sixteen rounds of one, have any place between them to half a rank; ends are pure.
     #[test]
     fn pixels_and_rounds_have_the_share_between_them() {
         let at = |share, pixel, round| {
@@ -101,10 +120,10 @@ mod tests {
             let pixels: f32 = (0..16).map(|i| at(share, [i % 4 + 8, i / 4 + 4], 3)).sum::<f32>() / 16.0;
             let rounds: f32 = (0..16).map(|round| at(share, [5, 2], round)).sum::<f32>() / 16.0;
             for mean in [pixels, rounds] {
-                assert!((mean - share * 15.0).abs() <= 0.5 / 16.0 + 1e-6, "{share}: {mean}");
+                assert!((mean - place_of(share) * 31.0).abs() <= 0.5 / 16.0 + 1e-5, "{share}: {mean}");
             }
         }
-        assert!((0..16).all(|i| at(1.0, [i % 4, i / 4], 0) == 15.0 && at(0.0, [i % 4, i / 4], 0) == 0.0));
+        assert!((0..16).all(|i| at(1.0, [i % 4, i / 4], 0) == 31.0 && at(0.0, [i % 4, i / 4], 0) == 0.0));
         assert!((0..16).all(|i| mixture_at(0.7, 1, [i, 0], &ImageSpaceSettings::default()) == 0));
     }
 }

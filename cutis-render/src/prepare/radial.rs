@@ -192,11 +192,24 @@ fn channels(material: &Material, kernel: &Kernel, choice: ImageSpaceProfile) -> 
     }
 }
 
+/// A profile without its sign: where diffusion has negative light, around thin layers, samples have to look, too.
+struct Absolute<'a, P>(&'a P);
+
+impl<P: Profile> Profile for Absolute<'_, P> {
+    fn spectrum(&self, k_per_mm: f64) -> f64 {
+        self.0.spectrum(k_per_mm)
+    }
+
+    fn at_mm(&self, r_mm: f64) -> f64 {
+        self.0.at_mm(r_mm).abs()
+    }
+}
+
 /// Drawn from by a table, as any profile can be.
 fn of_stack(stack: Stack) -> Result<Channel, String> {
     let mean_free_path_mm = stack.shortest_mean_free_path_mm();
     let profile = TabulatedProfile::new(stack, mean_free_path_mm);
-    let sampler = TabulatedSampler::new(&profile, mean_free_path_mm).map_err(|e| e.to_string())?;
+    let sampler = TabulatedSampler::new(&Absolute(&profile), mean_free_path_mm).map_err(|e| e.to_string())?;
     Ok(Channel { profile: Box::new(profile), sampler: Box::new(sampler) })
 }
 

@@ -124,8 +124,8 @@ impl ImageSpaceSettings {
         within("samples of the profile", samples as f32, "1 to 4096", (1..=4096).contains(&samples))?;
         within("uniform samples", uniform as f32, "0 to 4096", uniform <= 4096)?;
         let radius_mm = self.uniform_radius_mm.unwrap_or(1.0);
-        let is_good = radius_mm > 0.0 && radius_mm.is_finite();
-        within("radius of the uniform samples", radius_mm, "above 0 and finite, in mm", is_good)
+        let is_good = radius_mm > 0.0 && radius_mm <= 1e6;
+        within("radius of the uniform samples", radius_mm, "above 0, up to 1000000 mm", is_good)
     }
 }
 
@@ -218,7 +218,9 @@ impl Gathering<'_> {
             let Some(seen) = image.through(plane_mm, self.object) else { continue };
             valid += 1;
             let r = self.kernel.at_mm((offset_mm + seen.from_point_mm).length()).truncate();
-            if r == Vec3::ZERO || before.iter().any(|image| image.shows(&seen, self.object)) {
+            // Beyond the table nothing is drawn, but rounding may lead there.
+            let is_nothing = r == Vec3::ZERO || place.density_per_mm2 <= 0.0;
+            if is_nothing || before.iter().any(|image| image.shows(&seen, self.object)) {
                 continue;
             }
             let on_body = [seen.position_mm, seen.normal];
@@ -228,12 +230,14 @@ impl Gathering<'_> {
             };
             let drawn = self.kernel.at_mm(offset_mm.length()).truncate();
             let most = if self.settings.jacobian { MAX_GAIN } else { 1.0 };
-            let found = (r * jacobian).min(drawn * most);
+            let most = drawn.abs() * most;
+            let found = (r * jacobian).clamp(-most, most);
             sum += found * seen.irradiance_w_per_m2 / place.density_per_mm2;
         }
         // Where lights look for what the camera misses, it must not be made up for: what they miss as well is dark.
         let counts = self.settings.count == SampleCount::Valid && self.images.len() == 1 && valid > 0;
-        if counts { sum * (places.len() as f32 / valid as f32) } else { sum }
+        // Thin layers take light away where they get it to: never more than there is.
+        (if counts { sum * (places.len() as f32 / valid as f32) } else { sum }).max(Vec3::ZERO)
     }
 }
 

@@ -164,6 +164,27 @@ impl WrapSettings {
     }
 }
 
+/// Places above the surface that look for what hides a light, along tangent, bitangent and normal in times of the offset: over
+/// half of it to all sides, and up and down, so that the shadow's edge is as soft as the light that wraps into it.
+pub const PLACES_ABOVE: [Vec3; 16] = [
+    Vec3::new(0.088, 0.0, 0.53),
+    Vec3::new(-0.113, 0.103, 1.16),
+    Vec3::new(0.017, -0.197, 0.84),
+    Vec3::new(0.142, 0.186, 1.47),
+    Vec3::new(-0.261, -0.046, 0.66),
+    Vec3::new(0.247, -0.157, 1.28),
+    Vec3::new(-0.083, 0.308, 0.97),
+    Vec3::new(-0.156, -0.304, 0.59),
+    Vec3::new(0.342, 0.125, 1.22),
+    Vec3::new(-0.355, 0.147, 0.91),
+    Vec3::new(0.172, -0.366, 1.41),
+    Vec3::new(0.126, 0.405, 0.72),
+    Vec3::new(-0.38, -0.223, 1.34),
+    Vec3::new(0.447, -0.103, 1.03),
+    Vec3::new(-0.274, 0.386, 0.78),
+    Vec3::new(-0.062, -0.488, 1.09),
+];
+
 /// Below this, nothing wraps.
 const LEAST_WRAP: f32 = 1e-6;
 
@@ -213,9 +234,15 @@ impl<'a> Wrapped<'a> {
             return place.visible(l);
         }
         let offset_mm = self.lit.settings.techniques.wrap.shadow_offset_mm * offset_share(cos, wrap);
-        let origin = point.position_mm + point.normal * offset_mm;
-        let towards = light.sample(origin);
-        let above = f32::from(!self.lit.bvh.occluded(origin, towards.dir_to_light, towards.distance_mm));
+        let (tangent, bitangent) = point.normal.any_orthonormal_pair();
+        let sees = |above: &Vec3| {
+            let aside = tangent * above.x + bitangent * above.y;
+            let origin = point.position_mm + (point.normal * above.z + aside) * offset_mm;
+            let towards = light.sample(origin);
+            !self.lit.bvh.occluded(origin, towards.dir_to_light, towards.distance_mm)
+        };
+        let above =
+            PLACES_ABOVE.iter().filter(|above| sees(above)).count() as f32 / PLACES_ABOVE.len() as f32;
         above + (place.visible(l) - above) * (cos / wrap).max(0.0)
     }
 

@@ -52,6 +52,20 @@ fn every_place_is_of_the_mixture_that_the_map_says() {
         // The table holds R to 1e-4; half way two neighbours stand for the mixture between them.
         assert!((found / expected - 1.0).abs() < 3e-3, "{share}: {found} against {expected}");
     }
+    // Of the marble that is shipped little of the vein takes away much of the light.
+    let medium = |sigma_a| Medium::new(sigma_a, 2.19, 1.5).expect("is physical");
+    let [marble, vein] = [0.0021, 0.3].map(medium);
+    for share in [0.005f32, 1.0 / 30.0, 0.2, 0.9] {
+        let scattering = Scattering::Medium([vein; 3]);
+        let second = SecondMedium { scattering, share: ScalarMap::constant(share) };
+        let material = Material { mixed_with: Some(second), ..white(Scattering::Medium([marble; 3])) };
+        let pixels = exitances(&draw(&plane(material, Vec3::Z * 1000.0, sun(1.0)), &settings(own)));
+        let mixed = marble.mixed(&vein, f64::from(share));
+        let expected = Dipole::new(&mixed).expect("is physical").total() as f32;
+        let found = at(&pixels, 0.5).x;
+        eprintln!("marble, share {share}: {found}, expected {expected}");
+        assert!((found / expected - 1.0).abs() < 0.01, "{share}: {found} against {expected}");
+    }
     let other =
         Settings { technique: TechniqueName::TextureSpace, ..settings(ImageSpaceSettings::default()) };
     let told =

@@ -109,9 +109,35 @@ fn wrapped_visible(place: Place, l: u32, towards: LightSample, texels: Around, w
         return visible;
     }
     let offset_mm = wrap.shadow_offset_mm * offset_share(cos, widest);
-    let above = visible_above(l, place.position_mm + place.smooth_normal * offset_mm);
+    let axes = orthonormal_pair(place.smooth_normal);
+    var places = PLACES_ABOVE;
+    var above = 0.0;
+    for (var i = 0u; i < 16u; i++) {
+        let aside = axes[0] * places[i].x + axes[1] * places[i].y;
+        above += visible_above(l, place.position_mm + (place.smooth_normal * places[i].z + aside) * offset_mm) / 16.0;
+    }
     return mix(above, visible, max(cos / widest, 0.0));
 }
+
+/// Places above the surface that look for what hides a light, along tangent, bitangent and normal in times of the offset.
+const PLACES_ABOVE = array<vec3f, 16>(
+    vec3f(0.088, 0.0, 0.53),
+    vec3f(-0.113, 0.103, 1.16),
+    vec3f(0.017, -0.197, 0.84),
+    vec3f(0.142, 0.186, 1.47),
+    vec3f(-0.261, -0.046, 0.66),
+    vec3f(0.247, -0.157, 1.28),
+    vec3f(-0.083, 0.308, 0.97),
+    vec3f(-0.156, -0.304, 0.59),
+    vec3f(0.342, 0.125, 1.22),
+    vec3f(-0.355, 0.147, 0.91),
+    vec3f(0.172, -0.366, 1.41),
+    vec3f(0.126, 0.405, 0.72),
+    vec3f(-0.38, -0.223, 1.34),
+    vec3f(0.447, -0.103, 1.03),
+    vec3f(-0.274, 0.386, 0.78),
+    vec3f(-0.062, -0.488, 1.09),
+);
 
 /// Below this, nothing wraps.
 const LEAST_WRAP: f32 = 1e-6;

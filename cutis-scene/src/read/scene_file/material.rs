@@ -36,6 +36,12 @@ const COEFFICIENTS: [&str; 3] = ["sigma_a_per_mm", "sigma_s_reduced_per_mm", "re
 /// The keys that say what the tissue is.
 const TISSUES: [&str; 4] = ["kernel", "layers", "medium", "preset"];
 
+/// Least reduced scattering, 1/mm: below it nothing diffuses.
+const LEAST_SCATTERING: f32 = 1e-9;
+
+/// Largest ratio of the indices of refraction of neighbouring layers.
+const MAX_INDEX_RATIO: f64 = 2.0;
+
 /// Most layers of a tissue.
 const MAX_LAYERS: usize = 64;
 
@@ -103,8 +109,10 @@ fn has_its_own_colour(scattering: &Scattering) -> bool {
 pub(super) fn read(keys: &Keys, own: &Material, context: &mut Context) -> Result<Change, SceneError> {
     keys.only(&KNOWN)?;
     let images = &mut Images { own, context };
+    let scattering = scattering(keys)?;
+    let mixed_with = mixed_with(keys, scattering.as_ref().unwrap_or(&own.scattering), images)?;
     Ok(Change {
-        scattering: scattering(keys)?,
+        scattering,
         albedo: albedo(keys, images)?,
         albedo_mix: keys.number_in("albedo_mix", 0.0..=1.0)?,
         normal: normal(keys, images)?,
@@ -113,7 +121,7 @@ pub(super) fn read(keys: &Keys, own: &Material, context: &mut Context) -> Result
         f0: keys.number_in("f0", 0.0..=1.0)?,
         thickness_scale: keys.number_in("thickness_scale", 0.0..=MAX_THICKNESS_SCALE)?,
         under: under(keys, images)?,
-        mixed_with: mixed_with(keys, images)?,
+        mixed_with,
     })
 }
 
@@ -145,19 +153,37 @@ fn layer_under(keys: &Keys, images: &mut Images) -> Result<ColourMap, SceneError
 }
 
 /// A medium, or a preset that is one, and the `share` that it fills: a number, a path, or `{ path, channel, offset, gain }`.
-fn mixed_with(keys: &Keys, images: &mut Images) -> Result<Option<SecondMedium>, SceneError> {
+/// `first` is what it is mixed with.
+fn mixed_with(
+    keys: &Keys,
+    first: &Scattering,
+    images: &mut Images,
+) -> Result<Option<SecondMedium>, SceneError> {
     let Some(second) = keys.table("mixed_with")? else { return Ok(None) };
     second.only(&["preset", "medium", "share"])?;
+    if let Some(reason) = no_medium(first) {
+        return Err(keys.error("mixed_with", format!("has no medium to be mixed with: {reason}")));
+    }
     let scattering = second.required("medium", scattering(&second)?)?;
-    if let Scattering::Preset(name) = &scattering
-        // Names that nobody knows are told with those that are known, in the renderer.
-        && cutis_optics::presets::find(name).is_ok_and(|preset| preset.media().is_none())
-    {
-        return Err(second.error("preset", format!("`{name}` is a kernel; only media can be mixed")));
+    if let Some(reason) = no_medium(&scattering) {
+        return Err(second.error("preset", reason));
     }
     let plain = |texture| ScalarMap { offset: 0.0, gain: 1.0, texture: Some((texture, 0)) };
     let share = second.required("share", scalar(&second, "share", 0.0..=1.0, plain, images)?)?;
     Ok(Some(SecondMedium { scattering, share }))
+}
+
+/// Why a tissue is not a single medium, if it is none.
+fn no_medium(scattering: &Scattering) -> Option<String> {
+    match scattering {
+        Scattering::Medium(_) => None,
+        Scattering::Layers(_) => Some("the tissue has layers; only media mix".to_owned()),
+        Scattering::Kernel(_) => Some("the tissue is a kernel; only media mix".to_owned()),
+        Scattering::Preset(name) => match cutis_optics::presets::find(name) {
+            Ok(preset) => preset.media().is_none().then(|| format!("`{name}` is a kernel; only media mix")),
+            Err(unknown) => Some(unknown.to_string()),
+        },
+    }
 }
 
 fn scattering(keys: &Keys) -> Result<Option<Scattering>, SceneError> {
@@ -202,10 +228,23 @@ fn layers(keys: &Keys) -> Result<Scattering, SceneError> {
             given => given.unwrap_or(f64::INFINITY),
         };
         for (channel, medium) in layers.iter_mut().zip(media(layer)?) {
+            if let Some(above) = channel.last() {
+                check_indices(layer, above, &medium)?;
+            }
             channel.push(TissueLayer { medium, thickness_mm });
         }
     }
     Ok(Scattering::Layers(layers))
+}
+
+fn check_indices(keys: &Keys, above: &TissueLayer, below: &Medium) -> Result<(), SceneError> {
+    let (a, b) = (above.medium.refractive_index, below.refractive_index);
+    if a.max(b) <= MAX_INDEX_RATIO * a.min(b) {
+        return Ok(());
+    }
+    let reason =
+        format!("is {b} under a layer of {a}; neighbours may differ by a factor of {MAX_INDEX_RATIO}");
+    Err(keys.error("refractive_index", reason))
 }
 
 /// Coefficients per channel in 1/mm, from nearly clear to nearly opaque.
@@ -215,7 +254,7 @@ fn media(keys: &Keys) -> Result<[Medium; 3], SceneError> {
         keys.required(key, keys.triple(key)?)
     };
     let sigma_a = coefficients("sigma_a_per_mm", 0.0)?;
-    let sigma_s_reduced = coefficients("sigma_s_reduced_per_mm", f32::MIN_POSITIVE)?;
+    let sigma_s_reduced = coefficients("sigma_s_reduced_per_mm", LEAST_SCATTERING)?;
     let index = refractive_index(keys)?;
     Ok([0, 1, 2].map(|i| Medium {
         sigma_a_per_mm: sigma_a[i],

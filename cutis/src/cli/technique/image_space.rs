@@ -14,13 +14,14 @@ pub struct ImageSpaceArgs {
     /// Samples beside them that are spread evenly over a disc and find light beyond a shadow's border [0 to 4096, default 8]
     #[arg(long, value_name = "N")]
     pub uniform_samples: Option<u32>,
-    /// Radius of that disc [mm, above 0, default: that of 95 % of the light]
+    /// Radius of that disc [mm, above 0, up to 1000000, default: that of 95 % of the light]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub uniform_radius: Option<f32>,
     /// Whether areas on the tangent plane are turned into areas on the body; the paper leaves that out [default: on]
     #[arg(long, value_name = "SWITCH", value_parser = switch())]
     pub jacobian: Option<bool>,
-    /// What the sum of the samples is divided by: those that met the body, as in the paper, or all [default: valid]
+    /// What the sum of the samples is divided by: those that met the body, as in the paper, or all. Where lights have images of
+    /// their own (--light-views), these show what the camera misses, and all count [default: valid]
     #[arg(long, value_name = "NAME", value_parser = one_of(&SampleCount::ALL))]
     pub sample_count: Option<SampleCount>,
     /// Whether light that enters on the far side is taken from images that the lights see [default: on]

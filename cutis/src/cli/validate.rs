@@ -9,8 +9,9 @@ pub struct ValidateArgs {
     /// Scene to judge by; may be given several times [default: all]
     #[arg(long, value_name = "NAME")]
     pub only: Vec<String>,
-    /// What to judge, such as texture-space,texture-space/none [default: every technique, and the opaque surface]
-    #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
+    /// What to judge, such as texture-space,texture-space/none,image-space:jacobian=off; with numbers of its own it is measured
+    /// and held to no bound [default: every technique, and the opaque surface]
+    #[arg(long, value_name = "A,B,...")]
     pub techniques: Vec<String>,
     /// Folder of the truth: NAME.exr for every scene, and bounds.toml
     #[arg(long, value_name = "DIR", default_value = "truth")]

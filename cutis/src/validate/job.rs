@@ -1,11 +1,12 @@
 //! The arguments of `cutis validate`, checked.
 
 use crate::cli::ValidateArgs;
-use crate::compare::entry::Entry;
+use crate::compare::entry::{Entry, entries_of};
 use crate::job::refused;
+use cutis_render::settings::TechniqueSettings;
 use cutis_render::{Aov, Diffusion, Settings, TechniqueName};
 use cutis_scene::validation::{SCENES, ValidationScene};
-use miette::{Result, bail};
+use miette::{Result, bail, miette};
 use std::path::PathBuf;
 
 /// Width and height of the pictures: a stored file stays below 150 kB.
@@ -66,6 +67,8 @@ impl Job {
         Settings {
             technique: entry.technique,
             diffusion: entry.diffusion,
+            // Read before, when the entries were.
+            techniques: entry.techniques(TechniqueSettings::default()).unwrap_or_default(),
             width: SIZE,
             height: SIZE,
             samples_per_pixel: 16,
@@ -93,17 +96,25 @@ impl Job {
     }
 }
 
-/// Every technique but the truth itself, and the opaque surface; only those that are named, if some are.
+/// Every technique but the truth itself, and the opaque surface; only those that are named, if some are, with numbers of their own
+/// where they are given.
 fn entries(only: &[String]) -> Result<Vec<Entry>> {
     let judged = TechniqueName::ALL.iter().filter(|technique| **technique != TechniqueName::Truth);
     let opaque = Entry { diffusion: Diffusion::None, ..Entry::usual(TechniqueName::TextureSpace) };
     let all: Vec<_> = judged.map(|technique| Entry::usual(*technique)).chain([opaque]).collect();
-    if let Some(unknown) = only.iter().find(|name| all.iter().all(|entry| entry.to_string() != **name)) {
-        let known = all.iter().map(Entry::to_string).collect::<Vec<_>>().join(", ");
-        bail!("--techniques: there is no entry '{unknown}'; there are {known}");
+    let only: Vec<_> = only.iter().flat_map(|list| entries_of(list)).collect();
+    if only.is_empty() {
+        return Ok(all);
     }
-    let wanted = |entry: &Entry| only.is_empty() || only.contains(&entry.to_string());
-    Ok(all.into_iter().filter(wanted).collect())
+    let known = || all.iter().map(Entry::to_string).collect::<Vec<_>>().join(", ");
+    let entry = |name: &String| match all.iter().find(|entry| entry.to_string() == *name) {
+        Some(entry) => Ok(entry.clone()),
+        None if name.contains(':') && !name.starts_with("truth") => {
+            name.parse::<Entry>().map_err(|why| miette!("--techniques: {why}"))
+        }
+        None => Err(miette!("--techniques: there is no entry '{name}'; there are {}", known())),
+    };
+    only.iter().map(entry).collect()
 }
 
 /// The scenes of these names in their usual order, each once; all if none are named.
@@ -125,6 +136,12 @@ mod tests {
         let names: Vec<_> = entries(&[]).expect("all").iter().map(Entry::to_string).collect();
         assert_eq!(names.len(), TechniqueName::ALL.len(), "one less, and the opaque surface");
         assert!(!names.contains(&"truth".to_owned()) && names.contains(&"texture-space/none".to_owned()));
+        let of = |list: &str| entries(&[list.to_owned()]);
+        let own = of("image-space:jacobian=off,wrap:scatter-colour=0.1,0,0").expect("are known");
+        assert_eq!(own.iter().map(|entry| entry.flags.len()).collect::<Vec<_>>(), [1, 1]);
+        for bad in ["truth:samples=4", "image-space:jacobian=maybe", "none"] {
+            assert!(of(bad).expect_err(bad).to_string().starts_with("--techniques: "), "{bad}");
+        }
     }
 
     #[test]

@@ -93,7 +93,8 @@ fn judge(
     let mut entries = Vec::new();
     for entry in &job.entries {
         let mut judged = judge_entry(job, name, entry, &scene, &truth, warnings, verbose)?;
-        if job.accept {
+        // Bounds are for the usual numbers.
+        if job.accept && entry.flags.is_empty() {
             bounds.accept(name, &judged.name, &judged.errors);
         }
         judged.bound = bounds.get(name, &judged.name).copied();

@@ -54,7 +54,7 @@ impl<P: Profile> Profile for TabulatedProfile<P> {
     fn at_mm(&self, r_mm: f64) -> f64 {
         let x = (r_mm.max(0.0) / self.scale_mm).ln_1p() / STEP;
         let last = self.values.len() as f64 - 1.0;
-        if !(x <= last) || last < 3.0 {
+        if x > last || last < 3.0 {
             return 0.0;
         }
         // The four nodes around x, or the outermost four.

@@ -341,6 +341,9 @@ fn media() -> impl Strategy<Value = Scattering> {
     prop::array::uniform3(medium).prop_map(Scattering::Medium)
 }
 
+/// Absorption, scattering, index and thickness of a layer in each channel, and whether it may be endless.
+type LayerRow = ([(f64, f64, f64, f64); 3], bool);
+
 /// Two to four layers, the last one endless or not.
 fn layers() -> impl Strategy<Value = Scattering> {
     let layer = (0.0..10.0f64, 1e-3..100.0f64, 1.0..2.0f64, 1e-3..50.0f64);
@@ -348,7 +351,7 @@ fn layers() -> impl Strategy<Value = Scattering> {
     rows.prop_map(|rows| {
         let last = rows.len() - 1;
         Scattering::Layers([0, 1, 2].map(|channel| {
-            let layer = |(i, (row, endless)): (usize, &([(f64, f64, f64, f64); 3], bool))| {
+            let layer = |(i, (row, endless)): (usize, &LayerRow)| {
                 let (sigma_a_per_mm, sigma_s_reduced_per_mm, refractive_index, _) = row[channel];
                 let medium = Medium { sigma_a_per_mm, sigma_s_reduced_per_mm, refractive_index };
                 let thickness_mm = if i == last && *endless { f64::INFINITY } else { row[0].3 };

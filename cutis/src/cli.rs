@@ -29,7 +29,7 @@ pub use validate::ValidateArgs;
 pub use view::ViewArgs;
 
 /// Diffusion operators that can be chosen.
-pub const DIFFUSIONS: [Diffusion; 2] = [Diffusion::None, Diffusion::Separable];
+pub const DIFFUSIONS: [Diffusion; 3] = [Diffusion::None, Diffusion::Separable, Diffusion::HeatFlow];
 
 /// Names of [`AovSpace`].
 pub const AOV_SPACES: [(&str, AovSpace); 2] =
@@ -87,7 +87,8 @@ pub struct RenderArgs {
     /// of lights
     #[arg(long, value_name = "PAPER", value_parser = names(Paper::ALL))]
     pub as_in: Option<String>,
-    /// How light spreads under the surface; none: the surface is opaque
+    /// How light spreads under the surface; none: the surface is opaque; heat-flow: from texel to texel, across seams, on the
+    /// processor only
     #[arg(long, value_name = "NAME", default_value_t = Settings::default().diffusion.to_string(), value_parser = names(DIFFUSIONS))]
     pub diffusion: String,
     /// Where it is computed; auto: on a graphics processor if there is one, else on the processor; gpu: on any graphics

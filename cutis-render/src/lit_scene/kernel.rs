@@ -19,9 +19,11 @@ pub fn chosen_kernel(material: &Material, settings: &Settings) -> Result<Kernel,
     let kernel = kernel_of(material, settings.gaussians)?;
     // Only one technique spreads light by its Gaussians; the others take their total for the colour of the body.
     Ok(match (settings.technique, settings.diffusion) {
-        (TechniqueName::TextureSpace, Diffusion::Separable) => kernel.without(&settings.muted_gaussians),
+        (TechniqueName::TextureSpace, Diffusion::Separable | Diffusion::HeatFlow) => {
+            kernel.without(&settings.muted_gaussians)
+        }
         // What was blurred, and the share of what was not.
-        (TechniqueName::TextureBlur, Diffusion::Separable) => {
+        (TechniqueName::TextureBlur, Diffusion::Separable | Diffusion::HeatFlow) => {
             let (total, blend) = (kernel.total(), settings.techniques.texture_blur.blend);
             Kernel { variances_mm2: vec![0.0; 2], weights: vec![total * blend, total * (1.0 - blend)] }
         }

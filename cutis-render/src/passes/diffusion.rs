@@ -1,11 +1,13 @@
 //! Diffusion of light over the unrolled surface: from irradiance to one map per Gaussian.
 //!
 //! An operator takes the fields at full size and gives back a [`Diffused`]; what is done in between is its own affair.
-//! There are two: [`Separable`] (d'Eon, Luebke & Enderton 2007, section 5.1) and [`SevenTaps`] (Green 2004, section 16.4).
+//! There are three: [`Separable`] (d'Eon, Luebke & Enderton 2007, section 5.1), [`HeatFlow`] and [`SevenTaps`] (Green 2004,
+//! section 16.4).
 
 use crate::RenderError;
 use crate::passes::atlas::{ChartMap, NO_CHART};
 use crate::passes::blur::{Axis, Fields, Widening, blur};
+use crate::passes::heat_flow::HeatFlow;
 use crate::passes::object_maps::ObjectMaps;
 use crate::passes::seven_taps::SevenTaps;
 use crate::progress::Progress;
@@ -70,8 +72,11 @@ pub fn operator<'a>(
     through: Option<Vec<Vec4>>,
 ) -> Result<Box<dyn DiffusionOperator + 'a>, RenderError> {
     Ok(match (settings.technique, settings.diffusion) {
-        (TechniqueName::TextureBlur, Diffusion::Separable) => {
+        (TechniqueName::TextureBlur, Diffusion::Separable | Diffusion::HeatFlow) => {
             Box::new(SevenTaps::new(object, maps, through, settings)?)
+        }
+        (TechniqueName::TextureSpace, Diffusion::HeatFlow) => {
+            Box::new(HeatFlow::new(object, &maps.atlas, &maps.stretch_mm))
         }
         // Without diffusion the kernel is one Gaussian of no width, which any operator leaves as it is.
         _ => Box::new(Separable),

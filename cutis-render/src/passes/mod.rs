@@ -5,6 +5,7 @@ pub mod atlas;
 pub mod blur;
 pub mod diffusion;
 pub mod half_size;
+pub mod heat_flow;
 pub mod irradiance;
 pub mod irradiance_image;
 pub mod object_maps;

@@ -168,6 +168,8 @@ pub enum Diffusion {
     None,
     /// Seven-tap blurs along u and v, scaled by the local stretch (d'Eon, Luebke & Enderton 2007, section 5.1).
     Separable,
+    /// Heat that flows from texel to texel by the metric of the surface, across seams as within charts.
+    HeatFlow,
 }
 
 impl fmt::Display for Diffusion {
@@ -175,6 +177,7 @@ impl fmt::Display for Diffusion {
         match self {
             Diffusion::None => f.write_str("none"),
             Diffusion::Separable => f.write_str("separable"),
+            Diffusion::HeatFlow => f.write_str("heat-flow"),
         }
     }
 }

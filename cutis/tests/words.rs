@@ -18,7 +18,7 @@ fn help_tells_units_ranges_and_defaults() {
         "[texels, 16 to 16384, default 2048]",
         "[1 to 1048576, default 4]",
         "[fraction, 0 to 1, default 0.04]",
-        "[possible values: none, separable]",
+        "[possible values: none, separable, heat-flow]",
         "[cosine, 0 to 1, default 0.2]",
         "[mm, 0 to 1000, default 0.5]",
         "[factor, 0 to 64, default 1]",

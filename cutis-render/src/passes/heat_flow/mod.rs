@@ -1,7 +1,9 @@
 //! Diffusion as heat flow on the atlas: texels exchange light with their eight neighbours by the metric of the surface, across
 //! seams as within charts. A Gaussian of variance v is heat after the time v/2.
 //!
-//!     du/dt = 1/sqrt(det g) d_i (sqrt(det g) g^ij d_j u)
+//! ```text
+//! du/dt = 1/sqrt(det g) d_i (sqrt(det g) g^ij d_j u)
+//! ```
 //!
 //! Finite volumes on texels: what flows through a face counts for both sides alike, so that energy stays. East of a texel
 //! a11 (u_E - u_C) + a12 (u_NE + u_N - u_SE - u_S)/4 flows, with a of both sides averaged. All times come from one row of

@@ -53,7 +53,7 @@ fn squared_lengths_at_vertices_mm2(object: &Object) -> Vec<Vec2> {
 }
 
 /// dX/du and dX/dv of a triangle, mm per unit of the texture. `None` if it has no area in the texture.
-fn derivatives_mm(object: &Object, triangle: usize) -> Option<[Vec3; 2]> {
+pub fn derivatives_mm(object: &Object, triangle: usize) -> Option<[Vec3; 2]> {
     let [p0, p1, p2] = object.mesh.corners_mm(triangle);
     let [t0, t1, t2] = object.mesh.corner_uvs(triangle);
     let (e1, e2, d1, d2) = (p1 - p0, p2 - p0, t1 - t0, t2 - t0);

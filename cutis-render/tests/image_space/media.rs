@@ -118,6 +118,34 @@ fn layers_are_sampled_as_they_are() {
     );
 }
 
+/// Under a layer of a quarter of its mean free path light comes out again beyond a ring that takes some away; and it is told that
+/// the model is not made for it.
+#[test]
+fn light_beyond_a_thin_layer_s_ring_is_found() {
+    let layer = |s, thickness_mm| TissueLayer {
+        medium: Medium::new(0.05, s, 1.4).expect("is physical"),
+        thickness_mm,
+    };
+    let thin = vec![layer(5.0, 0.05), layer(1.0, f64::INFINITY)];
+    // One channel of them: every value of its profile is an integral of many waves.
+    let thick = vec![layer(5.0, 2.0), layer(1.0, f64::INFINITY)];
+    let total = Stack::in_air(&thin).expect("is physical").total() as f32;
+    let scene = plane(white(Scattering::Layers([thin, thick.clone(), thick])), Vec3::Z * 1000.0, sun(1.0));
+    let own = ImageSpaceSettings { samples: 512, count: SampleCount::All, ..ImageSpaceSettings::default() };
+    let frame = draw(&scene, &settings(own));
+    let pixels = exitances(&frame);
+    let middle: Vec<Vec3> =
+        (16..32).flat_map(|y| (16..32).map(move |x| y * 48 + x)).map(|i| pixels[i]).collect();
+    let found = mean(&middle).x;
+    eprintln!("thin layer: {found}, expected {total}");
+    assert!((found / total - 1.0).abs() < 0.02, "{found} against {total}");
+    assert!(
+        frame.warnings.iter().any(|words| words.contains("layer 1: a slab of 0.05 mm")),
+        "{:?}",
+        frame.warnings
+    );
+}
+
 /// A relief that tilts half of the plane by 45 degrees takes in as much less light.
 #[test]
 fn a_relief_turns_the_light_that_enters() {

@@ -3,9 +3,10 @@
 //! Symbols: X the surface over texels, mm; E = Xu·Xu, F = Xu·Xv, G = Xv·Xv the metric g; a = sqrt(det g) g^-1 what heat flows
 //! by between texels; sqrt(det g) the area of a texel, mm².
 
-use crate::passes::atlas::{Atlas, NO_CHART};
+use crate::passes::atlas::{Atlas, NO_CHART, TexelSurface};
+use crate::passes::stretch::derivatives_mm;
 use cutis_scene::Object;
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use rayon::prelude::*;
 
 /// Texels smaller than this part of the usual one are taken for that large: slivers would set the pace for all others.
@@ -37,8 +38,8 @@ impl Metric {
 /// The metric under every texel that a chart covers; nothing elsewhere.
 pub fn metrics(object: &Object, atlas: &Atlas, texel_mm: f32) -> Vec<Metric> {
     let of_triangle: Vec<Option<[Vec3; 2]>> =
-        (0..object.mesh.triangles.len()).map(|t| derivatives_mm(object, t, atlas.size)).collect();
-    let of = |surface: &crate::passes::atlas::TexelSurface| {
+        (0..object.mesh.triangles.len()).map(|t| derivatives_mm_per_texel(object, t, atlas.size)).collect();
+    let of = |surface: &TexelSurface| {
         if surface.triangle == NO_CHART {
             return Metric::default();
         }
@@ -49,11 +50,7 @@ pub fn metrics(object: &Object, atlas: &Atlas, texel_mm: f32) -> Vec<Metric> {
 }
 
 /// dX/du and dX/dv of a triangle, mm per texel. `None` if it has no area in the texture.
-pub fn derivatives_mm(object: &Object, triangle: usize, size: usize) -> Option<[Vec3; 2]> {
-    let [p0, p1, p2] = object.mesh.corners_mm(triangle);
-    let [t0, t1, t2]: [Vec2; 3] = object.mesh.corner_uvs(triangle).map(|uv| uv * size as f32);
-    let (e1, e2, d1, d2) = (p1 - p0, p2 - p0, t1 - t0, t2 - t0);
-    let determinant = d1.perp_dot(d2);
-    let derivatives = [(e1 * d2.y - e2 * d1.y) / determinant, (e2 * d1.x - e1 * d2.x) / determinant];
-    derivatives.iter().all(|d| d.is_finite()).then_some(derivatives)
+pub fn derivatives_mm_per_texel(object: &Object, triangle: usize, size: usize) -> Option<[Vec3; 2]> {
+    let per_texel = derivatives_mm(object, triangle)?.map(|d| d / size as f32);
+    per_texel.iter().all(|d| d.is_finite()).then_some(per_texel)
 }

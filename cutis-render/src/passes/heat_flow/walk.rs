@@ -1,6 +1,6 @@
 //! Straight ways over the surface, from a texel's centre to where a neighbour would be: across seams into other charts.
 
-use super::metric::derivatives_mm;
+use super::metric::derivatives_mm_per_texel;
 use cutis_scene::Object;
 use cutis_scene::topology::edges;
 use glam::{Vec2, Vec3};
@@ -130,8 +130,8 @@ impl<'a> Ground<'a> {
         let along = ((edge_place - own[i]).dot(edge) / edge.length_squared()).clamp(0.0, 1.0);
         // The other triangle runs along the edge the other way.
         let place = others[(j + 1) % 3].lerp(others[j], along);
-        let [xu, xv] = derivatives_mm(self.object, triangle as usize, self.size)?;
-        let [yu, yv] = derivatives_mm(self.object, other as usize, self.size)?;
+        let [xu, xv] = derivatives_mm_per_texel(self.object, triangle as usize, self.size)?;
+        let [yu, yv] = derivatives_mm_per_texel(self.object, other as usize, self.size)?;
         let mesh = &self.object.mesh;
         let (p, q) = (mesh.corners_mm(triangle as usize), mesh.corners_mm(other as usize));
         let edge_dir = (p[(i + 1) % 3] - p[i]).try_normalize()?;

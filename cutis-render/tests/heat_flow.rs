@@ -1,7 +1,8 @@
-//! Heat flow against closed forms: planes of any layout, cut or not, and balls.
+//! Heat flow against closed forms: planes of any layout, cut or not, tubes and balls.
+#![allow(clippy::unwrap_used, reason = "tests")]
 
 use cutis_render::Silent;
-use cutis_render::passes::atlas::{Atlas, NO_CHART};
+use cutis_render::passes::atlas::Atlas;
 use cutis_render::passes::blur::Fields;
 use cutis_render::passes::diffusion::DiffusionOperator;
 use cutis_render::passes::heat_flow::HeatFlow;
@@ -59,91 +60,258 @@ fn upright(place: Vec2, [i, j]: [usize; 2]) -> Vec2 {
     0.5 + 0.5 * middle + (place - middle) * 0.33
 }
 
-/// A map of light after heat has flowed for a Gaussian of that variance.
-fn flown(
-    object: &Object,
-    size: usize,
-    variance_mm2: f32,
-    light: impl Fn(Vec3) -> f32,
-) -> (Atlas, Vec<Vec4>, Vec<Vec4>) {
+/// Bent: stretched more and more to the right, and turned towards the top.
+fn bent(place: Vec2, _: [usize; 2]) -> Vec2 {
+    let x = place.x + 0.15 * place.x * place.x + 0.1 * place.x * place.y;
+    0.5 + Vec2::new(0.36 * x, 0.42 * (place.y + 0.1 * place.y * place.x * place.x) + 0.03 * x)
+}
+
+/// Cut at random into pieces, each turned by a random angle and placed on a square of its own.
+fn in_pieces(count: usize, seed: u32) -> Object {
+    let seeds: Vec<Vec2> =
+        (0..count).map(|i| 2.0 * Vec2::new(noise(i, seed), noise(i, seed + 1)) - 1.0).collect();
+    let across = (count as f32).sqrt().ceil() as usize;
+    let mut mesh = plane(whole).mesh;
+    // A piece has the quads nearest to its middle; it is as wide as the widest.
+    let piece_of = |quad: usize| {
+        let middle =
+            Vec2::new((quad % QUADS) as f32 + 0.5, (quad / QUADS) as f32 + 0.5) * 2.0 / QUADS as f32 - 1.0;
+        let apart = |i: &usize| (seeds[*i] - middle).length();
+        (0..count).min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap()
+    };
+    let pieces: Vec<usize> = (0..QUADS * QUADS).map(piece_of).collect();
+    let place = |v: usize| mesh.positions_mm[v].truncate() / HALF_MM;
+    let reach = |piece: usize| {
+        let own = (0..4 * pieces.len()).filter(|v| pieces[v / 4] == piece);
+        own.map(|v| (place(v) - seeds[piece]).length()).fold(0.0, f32::max)
+    };
+    let widest = (0..count).map(reach).fold(0.0, f32::max);
+    let uvs = (0..4 * pieces.len()).map(|v| {
+        let piece = pieces[v / 4];
+        let square = Vec2::new((piece % across) as f32 + 0.5, (piece / across) as f32 + 0.5);
+        let turn = Mat2::from_angle(std::f32::consts::TAU * noise(piece, seed + 2));
+        (square + turn * (place(v) - seeds[piece]) * 0.47 / widest) / across as f32
+    });
+    mesh.uvs = uvs.collect();
+    Object::new("pieces", mesh, Material::default())
+}
+
+/// A tube along z, cut along the line where y is 0 and x > 0.
+fn tube(radius_mm: f32, length_mm: f32, around: usize) -> Object {
+    let mut mesh = Mesh::default();
+    let along = 16;
+    for j in 0..=along {
+        for i in 0..=around {
+            let (s, t) = (i as f32 / around as f32, j as f32 / along as f32);
+            // The same numbers at both ends, so that they are one line.
+            let angle = std::f32::consts::TAU * (i % around) as f32 / around as f32;
+            mesh.positions_mm.push(Vec3::new(
+                angle.cos() * radius_mm,
+                angle.sin() * radius_mm,
+                t * length_mm,
+            ));
+            mesh.uvs.push(Vec2::new(0.02 + 0.93 * s, 0.1 + 0.37 * t));
+        }
+    }
+    let at = |i: usize, j: usize| (j * (around + 1) + i) as u32;
+    for j in 0..along {
+        for i in 0..around {
+            mesh.triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+            mesh.triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+        }
+    }
+    Object::new("tube", mesh, Material::default())
+}
+
+/// A place of the surface with its light.
+struct Lit {
+    place_mm: Vec3,
+    area_mm2: f32,
+    after: f32,
+}
+
+/// Light, as it is read at a few places of every triangle, after heat has flowed for a Gaussian of that variance.
+fn flown(object: &Object, size: usize, variance_mm2: f32, light: impl Fn(Vec3) -> f32) -> Vec<Lit> {
     let atlas = Atlas::new(object, size);
     let stretch_mm = stretch_mm_per_texel(object, &atlas);
     let at =
         |i: usize| atlas.surface_point(object, i).map_or(Vec4::ZERO, |p| Vec4::splat(light(p.position_mm)));
-    let before: Vec<Vec4> = (0..size * size).map(at).collect();
-    let flow = HeatFlow::new(object, &atlas, &stretch_mm);
-    let fields = Fields::new(vec![before.clone()], stretch_mm);
-    let diffused =
-        flow.diffuse(Arc::clone(&atlas.charts), fields, &[0.5 * variance_mm2, variance_mm2], &Silent);
-    let after = diffused.levels[2].layers[0].clone();
-    (atlas, before, after)
+    let before = (0..size * size).map(at).collect();
+    let variances_mm2 = [0.5 * variance_mm2, variance_mm2];
+    let flow = HeatFlow::new(object, &atlas, &stretch_mm, &variances_mm2);
+    let fields = Fields::new(vec![before], stretch_mm);
+    let diffused = flow.diffuse(Arc::clone(&atlas.charts), fields, &variances_mm2, &Silent);
+    let weights = [[0.6, 0.2], [0.2, 0.2], [0.2, 0.6], [1.0 / 3.0, 1.0 / 3.0]];
+    let read = |triangle: usize, [b1, b2]: [f32; 2]| {
+        let [a, b, c] = object.mesh.corner_uvs(triangle);
+        let uv = a + (b - a) * b1 + (c - a) * b2;
+        let after = diffused.sample(2, 0, uv, object.charts.of_triangle[triangle]).x;
+        let place_mm = object.surface_point(triangle as u32, b1, b2).position_mm;
+        Lit { place_mm, area_mm2: 0.25 * object.mesh.area_mm2(triangle), after }
+    };
+    (0..object.mesh.triangles.len()).flat_map(|t| weights.map(|w| read(t, w))).collect()
 }
 
-/// A Gaussian bump stays one, wider by the variance: on a plane in one piece, slanted, and cut into four, upright or turned, with
-/// the bump on the cut. No border is near. Of the peak 0.08 % are missed in one piece, 0.66 % by cuts along texels, 2.1 % by cuts
-/// across them, whose cells are stairs.
+/// Worst error of a bump of 1.5 mm² beside the crossing of the cuts that widens by a variance, by the peak, and all places.
+fn widened(object: &Object, size: usize, variance_mm2: f32) -> (f32, Vec<f32>) {
+    let own_mm2 = 1.5f32;
+    let middle = Vec3::new(0.7, -0.4, 0.0);
+    let bump = |v: f32| move |p: Vec3| own_mm2 / v * (-(p - middle).length_squared() / (2.0 * v)).exp();
+    let expected = bump(own_mm2 + variance_mm2);
+    let lit = flown(object, size, variance_mm2, bump(own_mm2));
+    let peak = expected(middle);
+    let worst = lit.iter().map(|l| (l.after - expected(l.place_mm)).abs()).fold(0.0, f32::max) / peak;
+    (worst, lit.iter().map(|l| l.after / peak).collect())
+}
+
+/// A Gaussian bump stays one, wider by the variance: on a plane in one piece, slanted, bent, and cut into 4 or 30 pieces, upright or
+/// turned, with the bump across cuts. No border is near. Texels are 0.16 to 0.5 mm wide.
 #[test]
 fn a_bump_on_a_plane_widens_whatever_the_layout() {
-    type Layout = fn(Vec2, [usize; 2]) -> Vec2;
-    let layouts: [(&str, Layout, f32); 4] = [
-        ("whole", whole, 0.001),
-        ("slanted", slanted, 0.001),
-        ("upright", upright, 0.01),
-        ("in four", in_four, 0.025),
+    let layouts = [
+        ("whole", plane(whole)),
+        ("slanted", plane(slanted)),
+        ("bent", plane(bent)),
+        ("upright", plane(upright)),
+        ("in four", plane(in_four)),
+        ("in thirty", in_pieces(30, 7)),
     ];
-    for (name, layout, allowed) in layouts {
-        let object = plane(layout);
-        let (own_mm2, variance_mm2) = (1.5f32, 6.0f32);
-        let middle = Vec3::new(0.7, -0.4, 0.0);
-        let bump = |v: f32| move |p: Vec3| own_mm2 / v * (-(p - middle).length_squared() / (2.0 * v)).exp();
-        let (atlas, _, after) = flown(&object, 256, variance_mm2, bump(own_mm2));
-        let expected = bump(own_mm2 + variance_mm2);
-        let peak = expected(middle);
-        let worst = (0..after.len())
-            .filter(|&i| atlas.surface[i].triangle != NO_CHART)
-            .filter_map(|i| {
-                let uv = atlas.uv_under(&object, i)? * 256.0 - 0.5;
-                let is_own = (uv - Vec2::new((i % 256) as f32, (i / 256) as f32)).length() < 2e-3;
-                let place = atlas.surface_point(&object, i)?.position_mm;
-                is_own.then(|| (after[i].x - expected(place)).abs() / peak)
-            })
-            .fold(0.0f32, f32::max);
-        eprintln!("{name}: worst error {worst} of the peak");
-        assert!(worst < allowed, "{name}: {worst}");
+    for variance_mm2 in [1.2, 6.0, 24.0] {
+        let mut first: Option<Vec<f32>> = None;
+        for (name, object) in &layouts {
+            let (worst, all) = widened(object, 512, variance_mm2);
+            let whole = first.get_or_insert_with(|| all.clone());
+            let apart = all.iter().zip(whole).map(|(a, b)| (a - *b).abs()).fold(0.0, f32::max);
+            eprintln!("{name}, {variance_mm2} mm²: {worst:.4} of the peak, {apart:.4} from the whole one");
+            assert!(worst < 0.01, "{name}, {variance_mm2}: {worst}");
+        }
     }
+}
+
+/// With half as wide texels a quarter of the error is left, up to and over cuts, as long as the map keeps its size.
+#[test]
+fn errors_fall_with_the_square_of_the_texel() {
+    for (name, object) in
+        [("whole", plane(slanted)), ("in four", plane(in_four)), ("in thirty", in_pieces(30, 7))]
+    {
+        let worst = [192, 384].map(|size| widened(&object, size, 0.6).0);
+        let order = (worst[0] / worst[1]).log2();
+        eprintln!("{name}: {worst:?}, order {order:.2}");
+        assert!(order > 1.6, "{name}: {worst:?}");
+    }
+}
+
+/// A tube cut along a line: waves around it fall by exp(-v/(2 R²)), and there is no trace of the cut.
+#[test]
+fn a_tube_shows_no_trace_of_its_cut() {
+    const RADIUS_MM: f32 = 8.0;
+    let object = tube(RADIUS_MM, 20.0, 96);
+    let wave = |p: Vec3| 1.0 + (p.x + 0.4 * p.y) / RADIUS_MM;
+    let variance_mm2 = 30.0;
+    let fall = (-variance_mm2 / (2.0 * RADIUS_MM * RADIUS_MM)).exp();
+    let lit = flown(&object, 256, variance_mm2, wave);
+    let off = |l: &Lit| (l.after - 1.0 - (wave(l.place_mm) - 1.0) * fall).abs();
+    let worst = |near: bool| {
+        let at_cut = |l: &&Lit| (l.place_mm.x > 0.0 && l.place_mm.y.abs() < 1.0) == near;
+        lit.iter().filter(at_cut).map(off).fold(0.0, f32::max)
+    };
+    eprintln!("at the cut {}, elsewhere {}", worst(true), worst(false));
+    assert!(worst(true) < 0.005 && worst(false) < 0.005, "{} {}", worst(true), worst(false));
 }
 
 /// Even light stays even, up to and over seams.
 #[test]
 fn even_light_stays_even_on_a_closed_body() {
     let ball = Object::new("ball", shapes::capsule(Vec3::ZERO, 10.0, 4.0, 64), Material::default());
-    let (atlas, _, after) = flown(&ball, 256, 8.0, |_| 1.0);
-    let covered = |i: &usize| atlas.surface[*i].triangle != NO_CHART;
-    let off = (0..after.len()).filter(covered).map(|i| (after[i].x - 1.0).abs()).fold(0.0, f32::max);
+    let lit = flown(&ball, 256, 8.0, |_| 1.0);
+    let off = lit.iter().map(|l| (l.after - 1.0).abs()).fold(0.0, f32::max);
     assert!(off < 1e-4, "{off}");
 }
 
-/// The slowest wave of a ball, cos of the angle from an axis, falls by exp(-v/R²). At the poles of its texture texels are slivers,
-/// which are taken for larger than they are: 0.2 % are missed on the mean by a wave around the equator, 1.7 % by one from pole to
-/// pole.
+/// The slowest wave of a ball, cos of the angle from an axis, falls by exp(-v/R²), within 1 % by area. At the poles of its texture
+/// texels are slivers, across which heat flows too slowly: there up to a fifth is missed.
 #[test]
 fn the_slowest_wave_of_a_ball_falls_as_it_should() {
     const RADIUS_MM: f32 = 10.0;
     let ball = Object::new("ball", shapes::capsule(Vec3::ZERO, RADIUS_MM, 0.0, 128), Material::default());
-    for (axis, allowed) in [(Vec3::X, 0.003), (Vec3::Y, 0.022)] {
+    for axis in [Vec3::X, Vec3::Y] {
         let wave = |p: Vec3| 1.0 + p.normalize().dot(axis);
-        let (atlas, before, after) = flown(&ball, 256, 20.0, wave);
+        let lit = flown(&ball, 256, 20.0, wave);
         let fall = (-20.0 / (RADIUS_MM * RADIUS_MM)).exp();
-        // By area: texels near the poles are many and small.
-        let stretch_mm = stretch_mm_per_texel(&ball, &atlas);
-        let (mut sum, mut area, mut worst) = (0.0f64, 0.0f64, 0.0f32);
-        for i in (0..after.len()).filter(|&i| atlas.surface[i].triangle != NO_CHART) {
-            let off = (after[i].x - 1.0 - (before[i].x - 1.0) * fall).abs();
-            let own = f64::from(stretch_mm[i].x * stretch_mm[i].y);
-            (sum, area, worst) = (sum + own * f64::from(off), area + own, worst.max(off));
+        let off = |l: &Lit| (l.after - 1.0 - (wave(l.place_mm) - 1.0) * fall).abs();
+        let mean = lit.iter().map(|l| off(l) * l.area_mm2).sum::<f32>()
+            / lit.iter().map(|l| l.area_mm2).sum::<f32>();
+        let worst = lit.iter().max_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
+        eprintln!("{axis}: mean error {mean}, worst {} at {}", off(worst), worst.place_mm);
+        assert!(mean < 0.01 && off(worst) < 0.25, "{axis}: {mean} {}", off(worst));
+    }
+}
+
+/// Any numbers, as a hash makes them: from 0 to 1.
+fn noise(i: usize, seed: u32) -> f32 {
+    let mut x = (i as u32).wrapping_mul(0x9E37_79B9) ^ seed.wrapping_mul(0x85EB_CA6B);
+    for factor in [0x7FEB_352D, 0x846C_A68B] {
+        x = (x ^ (x >> 15)).wrapping_mul(factor);
+    }
+    (x >> 8) as f32 / 16_777_216.0
+}
+
+/// x·(A y) is (Aᵀ x)·y, over cuts, halvings and the padding, up to rounding.
+#[test]
+fn the_transpose_is_one() {
+    let object = plane(in_four);
+    let (size, variances_mm2) = (256, [0.3, 2.0, 30.0]);
+    let atlas = Atlas::new(&object, size);
+    let flow = HeatFlow::new(&object, &atlas, &stretch_mm_per_texel(&object, &atlas), &variances_mm2);
+    let light: Vec<f64> = (0..size * size).map(|i| f64::from(noise(i, 1))).collect();
+    let maps = flow.flow(&light);
+    let weights: Vec<Vec<f64>> = maps
+        .iter()
+        .enumerate()
+        .map(|(n, map)| (0..map.len()).map(|i| f64::from(noise(i, 2 + n as u32)) - 0.5).collect())
+        .collect();
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let forth: f64 = maps.iter().zip(&weights).map(|(map, weights)| dot(map, weights)).sum();
+    let back = dot(&flow.transposed(&weights), &light);
+    let size_of_terms: f64 =
+        maps.iter().zip(&weights).map(|(m, w)| dot(m, m).sqrt() * dot(w, w).sqrt()).sum();
+    eprintln!("{forth} {back}, apart by {:e} of what is summed", (forth - back).abs() / size_of_terms);
+    assert!((forth - back).abs() < 1e-12 * size_of_terms, "{forth} {back}");
+}
+
+/// Whatever the mesh and its layout: slopes of light only fall, so that the sum of its squares does, and no energy is made or lost.
+#[test]
+fn no_input_makes_it_explode() {
+    for seed in 0..24 {
+        let mut object = plane(if seed % 2 == 0 { in_four } else { whole });
+        let rough = [0.0, 0.3, 3.0, 30.0][seed as usize / 2 % 4];
+        let torn = [0.0, 0.004, 0.05][seed as usize / 8];
+        for (i, p) in object.mesh.positions_mm.iter_mut().enumerate() {
+            // Corners of quads that lie together stay together.
+            let place = ((p.x * 100.0).round() as i32 * 7919 + (p.y * 100.0).round() as i32) as usize;
+            *p += Vec3::new(noise(place, seed), noise(place, seed + 100), noise(place, seed + 200)) * rough;
+            let uv = &mut object.mesh.uvs[i];
+            *uv = (*uv + torn * Vec2::new(noise(i, seed + 300), noise(i, seed + 400))).min(Vec2::ONE);
         }
-        let mean = sum / area;
-        eprintln!("{axis}: mean error {mean}, worst {worst}");
-        assert!(mean < allowed, "{axis}: {mean}");
+        let object = Object::new("rough", object.mesh, Material::default());
+        let size = 128;
+        let atlas = Atlas::new(&object, size);
+        let variances_mm2 = [1.0, 10.0, 100.0];
+        let flow = HeatFlow::new(&object, &atlas, &stretch_mm_per_texel(&object, &atlas), &variances_mm2);
+        let light: Vec<f64> = (0..size * size).map(|i| f64::from(noise(i / 7, 5).round())).collect();
+        let maps = flow.flow(&light);
+        let most = maps.iter().flatten().fold(0.0f64, |most, light| most.max(light.abs()));
+        let squares =
+            |map: &[f64]| map.iter().zip(flow.areas_mm2()).map(|(l, &a)| l * l * f64::from(a)).sum::<f64>();
+        let left: Vec<f64> = maps.iter().map(|map| squares(map) / squares(&light)).collect();
+        let energy =
+            |map: &[f64]| map.iter().zip(flow.areas_mm2()).map(|(l, &a)| l * f64::from(a)).sum::<f64>();
+        let change = energy(&maps[0]) / energy(&light) - 1.0;
+        eprintln!(
+            "seed {seed}, rough {rough}, torn {torn}: at most {most:.3}, squares {left:.4?}, energy {change:e}"
+        );
+        assert!(left.is_sorted_by(|a, b| a >= b) && left[0] < 1.0, "seed {seed}: {left:?}");
+        assert!(most < 10.0, "seed {seed}: {most}");
+        assert!(change.abs() < 1e-4, "seed {seed}: {change}");
     }
 }

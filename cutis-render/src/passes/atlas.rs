@@ -17,6 +17,9 @@ pub const NO_CHART: u32 = u32::MAX;
 /// Rings of padding around every chart, texels.
 const PADDING: usize = 2;
 
+/// A chart of fewer texels hardly holds light.
+const LEAST_CHART_TEXELS: f32 = 4.0;
+
 /// Rows of texels that one task rasterises.
 const BAND_ROWS: usize = 32;
 
@@ -142,8 +145,9 @@ impl ChartMap {
         let floor = p.floor();
         let f = p - floor;
         let last = self.size as i32 - 1;
-        let column = [floor.x as i32, floor.x as i32 + 1].map(|x| x.clamp(0, last) as usize);
-        let row = [floor.y as i32, floor.y as i32 + 1].map(|y| y.clamp(0, last) as usize * self.size);
+        let column = [floor.x as i32, (floor.x as i32).saturating_add(1)].map(|x| x.clamp(0, last) as usize);
+        let row = [floor.y as i32, (floor.y as i32).saturating_add(1)]
+            .map(|y| y.clamp(0, last) as usize * self.size);
         [
             (row[0] + column[0], (1.0 - f.x) * (1.0 - f.y)),
             (row[0] + column[1], f.x * (1.0 - f.y)),
@@ -167,6 +171,17 @@ impl ChartMap {
         // Below a thousandth the quotient would only magnify rounding.
         (weight > 1e-3).then(|| sum * weight.recip())
     }
+}
+
+/// For every chart of an object whether it is large enough to hold light on a map of that size.
+pub fn charts_that_hold_light(object: &Object, size: usize) -> Vec<bool> {
+    let of_triangle = &object.charts.of_triangle;
+    let mut texels = vec![0.0f32; of_triangle.iter().max().map_or(0, |&last| last as usize + 1)];
+    for (triangle, &chart) in of_triangle.iter().enumerate() {
+        let [a, b, c] = object.mesh.corner_uvs(triangle).map(|uv| uv * size as f32);
+        texels[chart as usize] += 0.5 * (b - a).perp_dot(c - a).abs();
+    }
+    texels.into_iter().map(|texels| texels >= LEAST_CHART_TEXELS).collect()
 }
 
 fn chart_of(object: &Object, surface: &TexelSurface) -> u32 {

@@ -76,7 +76,7 @@ pub fn operator<'a>(
             Box::new(SevenTaps::new(object, maps, through, settings)?)
         }
         (TechniqueName::TextureSpace, Diffusion::HeatFlow) => {
-            Box::new(HeatFlow::new(object, &maps.atlas, &maps.stretch_mm))
+            Box::new(HeatFlow::new(object, &maps.atlas, &maps.stretch_mm, &maps.kernel.variances_mm2))
         }
         // Without diffusion the kernel is one Gaussian of no width, which any operator leaves as it is.
         _ => Box::new(Separable),

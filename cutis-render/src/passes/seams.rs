@@ -1,5 +1,6 @@
 //! How good the diffusion is: energy kept, and light that does not match across seams.
 
+use crate::passes::atlas::charts_that_hold_light;
 use crate::passes::diffusion::Diffused;
 use crate::passes::object_maps::ObjectMaps;
 use cutis_scene::Object;
@@ -75,10 +76,14 @@ fn energy(object: &Object, light: impl Fn(Vec2, u32) -> Vec3) -> f64 {
     (0..mesh.triangles.len()).map(per_triangle).sum()
 }
 
-/// Mean and 99th percentile of |a - b| over the mean of all a and b.
+/// Mean and 99th percentile of |a - b| over the mean of all a and b, where both charts are large enough to hold light.
 fn seam_errors(object: &Object, maps: &ObjectMaps) -> [f64; 2] {
-    let pairs: Vec<[f64; 2]> =
-        object.charts.seams.iter().flat_map(|seam| sides(object, maps, seam)).collect();
+    let holds_light = charts_that_hold_light(object, maps.atlas.size);
+    let compared = |seam: &&Seam| {
+        seam.triangles.iter().all(|&t| holds_light[object.charts.of_triangle[t as usize] as usize])
+    };
+    let seams = object.charts.seams.iter().filter(compared);
+    let pairs: Vec<[f64; 2]> = seams.flat_map(|seam| sides(object, maps, seam)).collect();
     if pairs.is_empty() {
         return [0.0; 2];
     }

@@ -3,14 +3,15 @@
 //! Symbols: X the surface over texels, mm; E = Xu·Xu, F = Xu·Xv, G = Xv·Xv the metric g; a = sqrt(det g) g^-1 what heat flows
 //! by between texels; sqrt(det g) the area of a texel, mm².
 
-use crate::passes::atlas::{Atlas, NO_CHART, TexelSurface};
+use crate::passes::atlas::{Atlas, NO_CHART};
 use crate::passes::stretch::derivatives_mm;
 use cutis_scene::Object;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Texels smaller than this part of the usual one are taken for that large: slivers would set the pace for all others.
-const SMALLEST: f32 = 0.6;
+/// Heat crosses texels narrower than this part of the usual one as if they were that wide: slivers would set the pace for all
+/// others. Their areas, and what flows along them, are true.
+const SMALLEST: f32 = 0.58;
 /// Largest cosine between the axes that is believed.
 const MOST_SHEAR: f32 = 0.9;
 
@@ -26,31 +27,34 @@ pub struct Metric {
 impl Metric {
     /// From the derivatives along both axes, mm per texel; `texel_mm` is the usual size of a texel.
     pub fn new([xu, xv]: [Vec3; 2], texel_mm: f32) -> Self {
-        let least = (SMALLEST * texel_mm).powi(2);
-        let (e, g) = (xu.length_squared().max(least), xv.length_squared().max(least));
-        let most = MOST_SHEAR * (e * g).sqrt();
-        let f = xu.dot(xv).clamp(-most, most);
-        let area_mm2 = (e * g - f * f).sqrt();
-        Self { a: Vec3::new(g, -f, e) / area_mm2, area_mm2 }
+        let (e, f, g) = (xu.length_squared(), xu.dot(xv), xv.length_squared());
+        let area_mm2 = (e * g - f * f).max(0.0).sqrt();
+        let most = area_mm2 / (SMALLEST * texel_mm).powi(2);
+        // Without an area nothing can be said, and nothing flows.
+        let per_area = if area_mm2 > 0.0 { area_mm2.recip() } else { 0.0 };
+        let (a11, a22) = ((g * per_area).min(most), (e * per_area).min(most));
+        let shear = MOST_SHEAR * (a11 * a22).sqrt();
+        let metric = Self { a: Vec3::new(a11, (-f * per_area).clamp(-shear, shear), a22), area_mm2 };
+        if metric.a.is_finite() && area_mm2.is_finite() { metric } else { Self::default() }
     }
 }
 
+/// The metric of every triangle; nothing for those that have no area in the texture.
+pub fn metrics(object: &Object, size: usize, texel_mm: f32) -> Vec<Metric> {
+    let of = |t: usize| derivatives_mm_per_texel(object, t, size).map(|x| Metric::new(x, texel_mm));
+    (0..object.mesh.triangles.len()).into_par_iter().map(|t| of(t).unwrap_or_default()).collect()
+}
+
 /// The metric under every texel that a chart covers; nothing elsewhere.
-pub fn metrics(object: &Object, atlas: &Atlas, texel_mm: f32) -> Vec<Metric> {
-    let of_triangle: Vec<Option<[Vec3; 2]>> =
-        (0..object.mesh.triangles.len()).map(|t| derivatives_mm_per_texel(object, t, atlas.size)).collect();
-    let of = |surface: &TexelSurface| {
-        if surface.triangle == NO_CHART {
-            return Metric::default();
-        }
-        let flat = [Vec3::X * texel_mm, Vec3::Y * texel_mm];
-        Metric::new(of_triangle[surface.triangle as usize].unwrap_or(flat), texel_mm)
+pub fn metrics_of_texels(atlas: &Atlas, of_triangles: &[Metric]) -> Vec<Metric> {
+    let of = |triangle: u32| {
+        if triangle == NO_CHART { Metric::default() } else { of_triangles[triangle as usize] }
     };
-    atlas.surface.par_iter().map(of).collect()
+    atlas.surface.par_iter().map(|surface| of(surface.triangle)).collect()
 }
 
 /// dX/du and dX/dv of a triangle, mm per texel. `None` if it has no area in the texture.
 pub fn derivatives_mm_per_texel(object: &Object, triangle: usize, size: usize) -> Option<[Vec3; 2]> {
-    let per_texel = derivatives_mm(object, triangle)?.map(|d| d / size as f32);
-    per_texel.iter().all(|d| d.is_finite()).then_some(per_texel)
+    let derivatives = derivatives_mm(object, triangle)?.map(|d| d / size as f32);
+    derivatives.iter().all(|d| d.is_finite()).then_some(derivatives)
 }

@@ -1,125 +1,174 @@
-//! Diffusion as heat flow on the atlas: texels exchange light with their eight neighbours by the metric of the surface, across
-//! seams as within charts. A Gaussian of variance v is heat after the time v/2.
+//! Diffusion as heat flow from texel to texel: convolution with a Gaussian of variance v on a surface is heat flow for the time v/2.
 //!
 //! ```text
 //! du/dt = 1/sqrt(det g) d_i (sqrt(det g) g^ij d_j u)
 //! ```
 //!
-//! Finite volumes on texels: what flows through a face counts for both sides alike, so that energy stays. East of a texel
-//! a11 (u_E - u_C) + a12 (u_NE + u_N - u_SE - u_S)/4 flows, with a of both sides averaged. All times come from one row of
-//! exchanges: [`chebyshev`].
+//! Finite elements on texels: light is bilinear between them, and charts are held together along their seams ([`gaps`]). All times
+//! come from one row of exchanges ([`chebyshev`]), those of wide Gaussians from rows on smaller maps ([`coarse`]).
 //! Not modelled: light that goes straight through the flesh from one fold of the surface to the next.
 
+mod cells;
 mod chebyshev;
-mod halo;
+mod coarse;
+mod exchange;
+mod gaps;
 mod metric;
+mod padding;
+mod row;
+mod shore;
 mod walk;
 
 use crate::passes::atlas::{Atlas, ChartMap};
 use crate::passes::blur::Fields;
-use crate::passes::diffusion::{Diffused, DiffusionOperator, Level, median_texel_mm};
+use crate::passes::diffusion::{self, Diffused, DiffusionOperator, median_texel_mm};
 use crate::progress::Progress;
 use chebyshev::coefficients;
+use coarse::{ADDED_TEXEL2, Halving};
 use cutis_scene::Object;
+use exchange::{Exchange, Layout};
 use glam::Vec4;
-use halo::{Halo, NEIGHBOURS};
-use metric::{Metric, metrics};
-use rayon::prelude::*;
+use metric::{metrics, metrics_of_texels};
+pub use row::Light;
+use row::flown;
+use shore::{Read, Shore};
 use std::sync::Arc;
 
-/// Heat flow on the atlas of one object.
+/// A Gaussian may live in a smaller map when its standard deviation is still this many texels there.
+const COARSE_DEVIATION_TEXELS: f32 = 4.0;
+/// Smallest map: below this, charts dissolve and nothing is left to save.
+const MIN_SIZE: usize = 128;
+/// Mean variance that the bilinear read of a coarse map adds, texel².
+const BILINEAR_TEXEL2: f32 = 1.0 / 6.0;
+
+/// Heat flow on the atlas of one object, for the variances of one kernel.
 #[derive(Debug, Clone)]
 pub struct HeatFlow {
-    size: usize,
-    halo: Halo,
-    /// Rates, 1/mm², at which each texel takes from its eight neighbours; nothing where there is no surface.
-    rates: Vec<[f32; 8]>,
-    fastest_rate: f32,
+    levels: Vec<Level>,
+}
+
+/// A size of the maps.
+#[derive(Debug, Clone)]
+struct Level {
+    charts: Arc<ChartMap>,
+    exchange: Exchange,
+    padding: Vec<(u32, Read)>,
+    /// From the map of twice the size.
+    halving: Option<Halving>,
+    /// Coefficients of every time that is flown here.
+    times: Vec<Vec<f32>>,
 }
 
 impl HeatFlow {
-    /// Of an object in its pose.
-    pub fn new(object: &Object, atlas: &Atlas, stretch_mm: &[glam::Vec2]) -> Self {
-        let halo = Halo::new(object, atlas);
-        let metrics = metrics(object, atlas, median_texel_mm(&atlas.charts, stretch_mm));
-        let rates = rates(atlas.size, &halo, &metrics);
-        let bound =
-            |rates: &[f32; 8]| rates.iter().sum::<f32>() + rates.iter().map(|rate| rate.abs()).sum::<f32>();
-        let fastest_rate = rates.par_iter().map(bound).reduce(|| 0.0, f32::max);
-        Self { size: atlas.size, halo, rates, fastest_rate }
-    }
-
-    /// How fast every texel changes, 1/mm² of its light, by the light around it; texels near edges are asked one by one.
-    fn change(&self, light: &[Vec4], change: &mut [Vec4]) {
-        let size = self.size;
-        let offsets = NEIGHBOURS.map(|to| to.x as isize + to.y as isize * size as isize);
-        change.par_chunks_mut(size).enumerate().for_each(|(y, row)| {
-            if y == 0 || y + 1 == size {
-                return;
+    /// Of an object in its pose, for growing variances, mm².
+    pub fn new(object: &Object, atlas: &Atlas, stretch_mm: &[glam::Vec2], variances_mm2: &[f32]) -> Self {
+        let mut texel_mm = median_texel_mm(&atlas.charts, stretch_mm);
+        let mut levels: Vec<Level> = Vec::new();
+        let mut left = variances_mm2;
+        let (mut atlas, mut fine, mut added_texel2) = (atlas.clone(), None::<Atlas>, 0.0);
+        loop {
+            let halves = atlas.size.is_multiple_of(2) && atlas.size / 2 >= MIN_SIZE;
+            let wide = |v: &f32| halves && v.sqrt() >= COARSE_DEVIATION_TEXELS * 2.0 * texel_mm;
+            let here = left.iter().position(wide).unwrap_or(left.len());
+            let times_mm2: Vec<f32> =
+                left[..here].iter().map(|v| 0.5 * (v - added_texel2 * texel_mm * texel_mm)).collect();
+            let finer = levels.last().zip(fine.as_ref());
+            let finer = finer.map(|(level, atlas)| (atlas, level.exchange.areas_mm2.as_slice()));
+            levels.push(Level::new(object, &atlas, finer, texel_mm, &times_mm2));
+            left = &left[here..];
+            if left.is_empty() {
+                return Self { levels };
             }
-            for (x, changed) in row.iter_mut().enumerate().take(size - 1).skip(1) {
-                let i = y * size + x;
-                let rates = &self.rates[i];
-                let mut sum = Vec4::ZERO;
-                for k in 0..8 {
-                    sum += (light[(i as isize + offsets[k]) as usize] - light[i]) * rates[k];
-                }
-                *changed = sum;
-            }
-        });
-        let shores: Vec<(u32, Vec4)> = self
-            .halo
-            .shores
-            .par_iter()
-            .map(|shore| {
-                let own = light[shore.texel as usize];
-                let rates = &self.rates[shore.texel as usize];
-                let flows = shore.neighbours.iter().zip(rates).map(|(read, &rate)| {
-                    read.iter().map(|&(t, w)| (light[t as usize] - own) * w).sum::<Vec4>() * rate
-                });
-                (shore.texel, flows.sum())
-            })
-            .collect();
-        shores.into_iter().for_each(|(texel, flow)| change[texel as usize] = flow);
-    }
-
-    /// One layer after heat has flowed for each time, mm².
-    fn flown(&self, layer: &[Vec4], times_mm2: &[f32]) -> Vec<Vec<Vec4>> {
-        let rate = self.fastest_rate.max(f32::MIN_POSITIVE);
-        let all: Vec<Vec<f32>> =
-            times_mm2.iter().map(|&time| coefficients(f64::from(time), f64::from(rate))).collect();
-        let scaled = |factor: f32| layer.par_iter().map(|&light| light * factor).collect();
-        let mut sums: Vec<Vec<Vec4>> = all.iter().map(|c| scaled(c[0])).collect();
-        let mut change = bytemuck::zeroed_vec::<Vec4>(layer.len());
-        // T_0 and T_1 of x = 1 - 2 L/λ.
-        let mut before = layer.to_vec();
-        self.change(&before, &mut change);
-        let mut last: Vec<Vec4> =
-            before.par_iter().zip(&change).map(|(&light, &change)| light + change * (2.0 / rate)).collect();
-        let most = all.iter().map(Vec::len).max().unwrap_or(0);
-        for k in 1..most {
-            for (sum, c) in sums.iter_mut().zip(&all).filter(|(_, c)| k < c.len()) {
-                let c = c[k];
-                sum.par_iter_mut().zip(&last).for_each(|(sum, &light)| *sum += light * c);
-            }
-            if k + 1 < most {
-                self.change(&last, &mut change);
-                before.par_iter_mut().enumerate().for_each(|(i, before)| {
-                    *before = (last[i] + change[i] * (2.0 / rate)) * 2.0 - *before;
-                });
-                std::mem::swap(&mut before, &mut last);
-            }
+            let halved = if levels.len() == 1 { 0.0 } else { added_texel2 - BILINEAR_TEXEL2 };
+            added_texel2 = 0.25 * halved + ADDED_TEXEL2 + BILINEAR_TEXEL2;
+            texel_mm *= 2.0;
+            let coarse = Atlas::new(object, atlas.size / 2);
+            fine = Some(std::mem::replace(&mut atlas, coarse));
         }
-        sums
+    }
+
+    /// Area that each texel of the light's own map stands for, mm²: what light is worth in energy.
+    pub fn areas_mm2(&self) -> &[f32] {
+        &self.levels[0].exchange.areas_mm2
+    }
+
+    /// Light on its own map to light after every variance, on the maps of their levels.
+    pub fn flow<L: Light>(&self, light: &[L]) -> Vec<Vec<L>> {
+        let mut light = light.to_vec();
+        let mut all = Vec::new();
+        for level in &self.levels {
+            if let Some(halving) = &level.halving {
+                light = halving.halved(&light);
+            }
+            let flown = flown(&level.exchange, &level.times, &light);
+            all.extend(flown.into_iter().map(|map| level.padded(map)));
+        }
+        all
+    }
+
+    /// The transpose of [`Self::flow`]: from what something changes by the light of every map to what it changes by the light
+    /// before.
+    pub fn transposed<L: Light>(&self, maps: &[Vec<L>]) -> Vec<L> {
+        let mut maps = maps.iter().rev();
+        let mut sum: Option<Vec<L>> = None;
+        for level in self.levels.iter().rev() {
+            let size = level.exchange.size;
+            let mut own = sum.take().unwrap_or_else(|| vec![L::default(); size * size]);
+            for (time, map) in level.times.iter().rev().zip(maps.by_ref()) {
+                let back = level.flown_back(time, map);
+                own.iter_mut().zip(back).for_each(|(own, back)| *own = *own + back);
+            }
+            sum = Some(level.halving.as_ref().map_or(own.clone(), |halving| halving.transposed(&own)));
+        }
+        sum.unwrap_or_default()
+    }
+}
+
+impl Level {
+    fn new(
+        object: &Object,
+        atlas: &Atlas,
+        finer: Option<(&Atlas, &[f32])>,
+        texel_mm: f32,
+        times_mm2: &[f32],
+    ) -> Self {
+        let shore = Shore::new(object, atlas);
+        let layout = Layout::new(object, &shore);
+        let metrics = metrics(object, atlas.size, texel_mm);
+        let of_texels = metrics_of_texels(atlas, &metrics);
+        let halving = finer.map(|(fine, areas_mm2)| Halving::new(fine, areas_mm2, &shore, &layout));
+        let areas_mm2 = halving.as_ref().map(|halving| halving.areas_mm2.as_slice());
+        let exchange = Exchange::new(object, &layout, (&metrics, &of_texels), areas_mm2, texel_mm);
+        let of = |&time: &f32| {
+            coefficients(f64::from(time), f64::from(exchange.fastest_rate), f64::from(texel_mm))
+        };
+        let times = times_mm2.iter().map(of).collect();
+        Self { charts: Arc::clone(&atlas.charts), exchange, padding: layout.padding, halving, times }
     }
 
     /// What is beyond the edges of charts is what is across the seam, for those who read there.
-    fn fill_padding(&self, layer: &mut [Vec4]) {
-        let read = |(texel, read): &(u32, halo::Read)| {
-            (*texel, read.iter().map(|&(t, w)| layer[t as usize] * w).sum::<Vec4>())
-        };
-        let filled: Vec<_> = self.halo.padding.par_iter().map(read).collect();
-        filled.into_iter().for_each(|(texel, light)| layer[texel as usize] = light);
+    fn padded<L: Light>(&self, mut map: Vec<L>) -> Vec<L> {
+        let read =
+            |read: &Read| read.iter().fold(L::default(), |sum, &(t, w)| sum + map[t as usize].times(w));
+        let filled: Vec<L> = self.padding.iter().map(|(_, from)| read(from)).collect();
+        self.padding.iter().zip(filled).for_each(|((texel, _), light)| map[*texel as usize] = light);
+        map
+    }
+
+    /// The transpose of flowing for a time, with the padding: links are the same both ways, but light counts by area.
+    fn flown_back<L: Light>(&self, time: &[f32], map: &[L]) -> Vec<L> {
+        let mut map = map.to_vec();
+        let taken: Vec<L> =
+            self.padding.iter().map(|(texel, _)| std::mem::take(&mut map[*texel as usize])).collect();
+        for ((_, read), light) in self.padding.iter().zip(taken) {
+            read.iter().for_each(|&(t, w)| map[t as usize] = map[t as usize] + light.times(w));
+        }
+        let per_area = &self.exchange.per_area;
+        let counts = |&per_area: &f32| if per_area > 0.0 { per_area } else { 1.0 };
+        map.iter_mut().zip(per_area).for_each(|(light, p)| *light = light.times(counts(p)));
+        let mut back = flown(&self.exchange, &[time.to_vec()], &map).swap_remove(0);
+        back.iter_mut().zip(per_area).for_each(|(light, p)| *light = light.over(counts(p)));
+        back
     }
 }
 
@@ -132,54 +181,17 @@ impl DiffusionOperator for HeatFlow {
         progress: &dyn Progress,
     ) -> Diffused {
         progress.begin("heat flow", variances_mm2.len() as u64);
-        let times_mm2: Vec<f32> = variances_mm2.iter().map(|v| 0.5 * v).collect();
-        let flown: Vec<Vec<Vec<Vec4>>> =
-            fields.layers.iter().map(|layer| self.flown(layer, &times_mm2)).collect();
-        let level = |layers| Level { charts: Arc::clone(&charts), layers };
-        let mut levels = vec![level(Arc::clone(&fields.layers))];
+        let level = |charts: &Arc<ChartMap>, layers| diffusion::Level { charts: Arc::clone(charts), layers };
+        let mut levels = vec![level(&charts, Arc::clone(&fields.layers))];
         // By layer, then by time; levels are the other way round.
-        let mut by_layer: Vec<_> = flown.into_iter().map(Vec::into_iter).collect();
-        for _ in variances_mm2 {
-            let mut layers: Vec<Vec<Vec4>> = by_layer.iter_mut().filter_map(Iterator::next).collect();
-            layers.iter_mut().for_each(|layer| self.fill_padding(layer));
-            levels.push(level(Arc::new(layers)));
-            progress.advance(1);
+        let mut by_layer: Vec<_> = fields.layers.iter().map(|layer| self.flow(layer).into_iter()).collect();
+        for own in &self.levels {
+            for _ in &own.times {
+                let layers: Vec<Vec<Vec4>> = by_layer.iter_mut().filter_map(Iterator::next).collect();
+                levels.push(level(&own.charts, Arc::new(layers)));
+                progress.advance(1);
+            }
         }
         Diffused { levels }
     }
-}
-
-/// Rates of every own texel.
-fn rates(size: usize, halo: &Halo, metrics: &[Metric]) -> Vec<[f32; 8]> {
-    let of = |i: usize| {
-        if !halo.own[i] {
-            return [0.0; 8];
-        }
-        let last = size as i32 - 1;
-        let own = metrics[i];
-        // Where a neighbour has no surface under it, the metric of this texel goes on. Along an edge faces are as wide as the
-        // cells on both sides, across it as usual: the middle one of both areas and 1.
-        let face = |to: usize| {
-            let (x, y) = ((i % size) as i32 + NEIGHBOURS[to].x, (i / size) as i32 + NEIGHBOURS[to].y);
-            let there = x.clamp(0, last) as usize + y.clamp(0, last) as usize * size;
-            let other = metrics[there];
-            let a = if other.area_mm2 > 0.0 { 0.5 * (own.a + other.a) } else { own.a };
-            let (c, d) = (halo.cover[i], if halo.own[there] { halo.cover[there] } else { 1.0 });
-            a * c.min(d).max(c.max(d).min(1.0))
-        };
-        let [east, north, west, south] = [0, 2, 4, 6].map(face);
-        let q = 0.25;
-        let flows = [
-            east.x + q * (north.y - south.y),
-            q * (east.y + north.y),
-            north.z + q * (east.y - west.y),
-            -q * (north.y + west.y),
-            west.x + q * (south.y - north.y),
-            q * (west.y + south.y),
-            south.z + q * (west.y - east.y),
-            -q * (south.y + east.y),
-        ];
-        flows.map(|flow| flow / (own.area_mm2 * halo.cover[i]))
-    };
-    (0..size * size).into_par_iter().map(of).collect()
 }

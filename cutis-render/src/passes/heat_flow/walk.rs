@@ -45,13 +45,35 @@ impl<'a> Ground<'a> {
         Self { object, size, across }
     }
 
+    /// Makes borders of the edges of charts that are not `alive`.
+    pub fn leave_out(&mut self, alive: impl Fn(u32) -> bool) {
+        for (triangle, across) in self.across.iter_mut().enumerate() {
+            let own = alive(self.object.charts.of_triangle[triangle]);
+            across.iter_mut().for_each(|edge| {
+                *edge =
+                    edge.filter(|&(other, _)| own && alive(self.object.charts.of_triangle[other as usize]));
+            });
+        }
+    }
+
     /// Whether the texture goes on across the edge that begins at a corner.
     pub fn goes_on(&self, triangle: u32, corner: u8) -> bool {
-        let Some((other, there)) = self.across[triangle as usize][usize::from(corner)] else { return false };
+        let Some((other, there)) = self.across(triangle, corner) else { return false };
         let (own, others) = (self.corners(triangle), self.corners(other));
         let (i, j) = (usize::from(corner), usize::from(there));
         let same = |a: Vec2, b: Vec2| (a - b).abs().max_element() < 1e-4;
         same(own[i], others[(j + 1) % 3]) && same(own[(i + 1) % 3], others[j])
+    }
+
+    /// The triangle and corner across the edge that begins at a corner.
+    pub fn across(&self, triangle: u32, corner: u8) -> Option<(u32, u8)> {
+        self.across[triangle as usize][usize::from(corner)]
+    }
+
+    /// The ends, on the texture, of the edge that begins at a corner, texels.
+    pub fn edge(&self, triangle: u32, corner: u8) -> [Vec2; 2] {
+        let corners = self.corners(triangle);
+        [corners[usize::from(corner)], corners[(usize::from(corner) + 1) % 3]]
     }
 
     /// Corners on the texture, texels.
@@ -70,7 +92,7 @@ impl<'a> Ground<'a> {
             };
             let edge_place = at.place + step * part;
             let rest = step * (1.0 - part);
-            let Some((other, there)) = self.across[at.triangle as usize][usize::from(corner)] else {
+            let Some((other, there)) = self.across(at.triangle, corner) else {
                 return Arrival { place: edge_place, at_border: true, ..at };
             };
             if self.goes_on(at.triangle, corner) {

@@ -1,0 +1,290 @@
+//! Who gives how much heat to whom: links between texels, the same in both directions, so that no energy is lost or made.
+//!
+//! Light is bilinear between texels; with S the energy of its slopes and M the area of each texel, it changes by -M⁻¹ S. Links are
+//! what S couples: inside of charts those of a texel to its eight neighbours, at their edges those of a sparse matrix.
+
+use super::cells::{Cell, Cells};
+use super::gaps::{Gap, Jump, gaps};
+use super::metric::Metric;
+use super::padding::padding;
+use super::shore::{Read, Shore, corners};
+use cutis_scene::Object;
+use glam::{Mat4, Vec4};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// What a texel at the edge of a chart may give, per time, by the area of a usual texel: thin strips would set the pace for all
+/// others.
+const FASTEST: f32 = 8.0;
+/// What edges of charts need; it depends on the layout of the texture, and stays when the surface moves.
+#[derive(Debug, Clone)]
+pub struct Layout {
+    size: usize,
+    /// Squares that lie on one chart as a whole.
+    pub whole: Vec<bool>,
+    cells: Vec<Cell>,
+    gaps: Vec<Gap>,
+    /// Texels of the padding, and what they hold.
+    pub padding: Vec<(u32, Read)>,
+}
+
+/// Links at the edges of charts, row by row.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Rows {
+    /// Texels, growing.
+    pub texels: Vec<u32>,
+    /// Where each texel's links begin, and where the last one's end.
+    pub starts: Vec<u32>,
+    /// Texel at the other end, and strength of the link.
+    pub links: Vec<(u32, f32)>,
+}
+
+/// All links, for one pose.
+#[derive(Debug, Clone)]
+pub struct Exchange {
+    /// Width and height of the atlas, texels.
+    pub size: usize,
+    /// Links of each texel to the next along u, the next along v, and the next along v to the right and to the left.
+    pub links: Vec<[f32; 4]>,
+    /// Further links.
+    pub rows: Rows,
+    /// Area that each texel stands for, mm²; 0 where there is no surface.
+    pub areas_mm2: Vec<f32>,
+    /// Where there is surface, row by row.
+    pub runs: Vec<Vec<Range<usize>>>,
+    /// Its inverse, 1/mm²; 0 where there is no surface.
+    pub per_area: Vec<f32>,
+    /// Every wave of light falls more slowly, 1/mm².
+    pub fastest_rate: f32,
+}
+
+impl Layout {
+    /// Of an object and its atlas.
+    pub fn new(object: &Object, shore: &Shore) -> Self {
+        let size = shore.size();
+        let whole = (0..size * size)
+            .into_par_iter()
+            .map(|i| i % size + 1 < size && i / size + 1 < size && shore.is_whole(i))
+            .collect();
+        let (cells, padding) = rayon::join(|| Cells::new(object, shore), || padding(object, shore));
+        let gaps = gaps(object, shore, &cells);
+        let cells = cells.all;
+        Self { size, whole, cells, gaps, padding }
+    }
+}
+
+impl Exchange {
+    /// For the pose of an object: metrics of its triangles and of its texels. Areas follow from them, unless they are given.
+    pub fn new(
+        object: &Object,
+        layout: &Layout,
+        (metrics, of_texels): (&[Metric], &[Metric]),
+        areas_mm2: Option<&[f32]>,
+        texel_mm: f32,
+    ) -> Self {
+        let size = layout.size;
+        let squares: Vec<Metric> = (0..size * size)
+            .into_par_iter()
+            .map(|i| {
+                if layout.whole[i] { mean(corners(i, size).map(|t| of_texels[t])) } else { Metric::default() }
+            })
+            .collect();
+        let at = |i: usize, back: usize| i.checked_sub(back).map_or(Metric::default(), |i| squares[i]);
+        let links = (0..size * size)
+            .into_par_iter()
+            .map(|i| {
+                let [here, below, left] = [squares[i], at(i, size), at(i, 1)];
+                let along = |a: f32, b: f32| a / 3.0 - b / 6.0;
+                let sum = (here.a.x + here.a.z) / 6.0;
+                let sum_left = (left.a.x + left.a.z) / 6.0;
+                [
+                    along(here.a.x, here.a.z) + along(below.a.x, below.a.z),
+                    along(here.a.z, here.a.x) + along(left.a.z, left.a.x),
+                    sum + 0.5 * here.a.y,
+                    sum_left - 0.5 * left.a.y,
+                ]
+            })
+            .collect();
+        let mut own_mm2: Vec<f32> = (0..size * size)
+            .into_par_iter()
+            .map(|i| [0, 1, size, size + 1].map(|back| at(i, back).area_mm2).iter().sum::<f32>() * 0.25)
+            .collect();
+        let elements = elements(object, layout, metrics, &mut own_mm2);
+        let areas_mm2 = areas_mm2.map_or(own_mm2, <[f32]>::to_vec);
+        let per_area = areas_mm2.iter().map(|&area| if area > 0.0 { area.recip() } else { 0.0 }).collect();
+        let runs = areas_mm2.par_chunks(size).map(runs_of).collect();
+        let mut exchange =
+            Self { size, links, rows: Rows::default(), areas_mm2, runs, per_area, fastest_rate: 0.0 };
+        exchange.rows = rows(&elements, &vec![1.0; size * size]);
+        exchange.rows = rows(&elements, &exchange.pace(FASTEST / (texel_mm * texel_mm)));
+        exchange.fastest_rate = exchange.bound_of_rates();
+        exchange
+    }
+
+    /// What every texel may keep of its links at the edges, so that it gives at most that part of its light.
+    fn pace(&self, fastest: f32) -> Vec<f32> {
+        let mut part = vec![1.0f32; self.areas_mm2.len()];
+        for (texel, links) in self.rows.iter() {
+            let outer: f32 = links.iter().map(|(_, link)| link.abs()).sum();
+            let most = (fastest * self.areas_mm2[texel] - self.inner_strength(texel)).max(0.0);
+            part[texel] = if outer > most { most / outer } else { 1.0 };
+        }
+        part
+    }
+
+    /// Sum of a texel's links to its eight neighbours.
+    fn inner_strength(&self, i: usize) -> f32 {
+        let size = self.size;
+        // Texels along the edges of the map have none.
+        if i <= size || i + size + 1 >= self.links.len() {
+            return 0.0;
+        }
+        let back = [
+            self.links[i - 1][0],
+            self.links[i - size][1],
+            self.links[i - size - 1][2],
+            self.links[i - size + 1][3],
+        ];
+        self.links[i].iter().chain(&back).map(|link| link.abs()).sum()
+    }
+
+    /// No wave is faster than twice what any texel gives (Gershgorin 1931).
+    fn bound_of_rates(&self) -> f32 {
+        let mut given: Vec<f32> =
+            (0..self.links.len()).into_par_iter().map(|i| self.inner_strength(i)).collect();
+        for (texel, links) in self.rows.iter() {
+            given[texel] += links.iter().map(|(_, link)| link.abs()).sum::<f32>();
+        }
+        let rates = given.par_iter().zip(&self.per_area).map(|(given, per_area)| 2.0 * given * per_area);
+        rates.reduce(|| f32::MIN_POSITIVE, f32::max)
+    }
+}
+
+impl Rows {
+    /// Every texel with its links.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, &[(u32, f32)])> {
+        self.texels
+            .iter()
+            .zip(self.starts.windows(2))
+            .map(|(&texel, ends)| (texel as usize, &self.links[ends[0] as usize..ends[1] as usize]))
+    }
+}
+
+fn runs_of(areas_mm2: &[f32]) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for x in (0..areas_mm2.len()).filter(|&x| areas_mm2[x] > 0.0) {
+        match runs.last_mut() {
+            Some(run) if run.end == x => run.end = x + 1,
+            _ => runs.push(x..x + 1),
+        }
+    }
+    runs
+}
+
+fn mean(all: [Metric; 4]) -> Metric {
+    let sum = all
+        .iter()
+        .fold(Metric::default(), |sum, m| Metric { a: sum.a + m.a, area_mm2: sum.area_mm2 + m.area_mm2 });
+    Metric { a: sum.a * 0.25, area_mm2: sum.area_mm2 * 0.25 }
+}
+
+/// What a cell or a gap links, of every pair of texels once.
+struct Element {
+    links: Vec<(u32, u32, f32)>,
+}
+
+/// Of cut cells and gaps; their areas are added.
+fn elements(object: &Object, layout: &Layout, metrics: &[Metric], areas_mm2: &mut [f32]) -> Vec<Element> {
+    let (areas, slopes): (Vec<Vec4>, Vec<Mat4>) =
+        layout.cells.par_iter().map(|cell| cell.integrals(metrics)).unzip();
+    for (cell, areas) in layout.cells.iter().zip(&areas) {
+        for (k, read) in cell.corners.iter().enumerate() {
+            read.iter().for_each(|&(i, weight)| areas_mm2[i as usize] += weight * areas[k]);
+        }
+    }
+    let cells = layout.cells.par_iter().zip(&slopes);
+    let mut all: Vec<Element> =
+        cells.map(|(cell, slopes)| of_cell(cell, &slopes.to_cols_array_2d())).collect();
+    let jump = |gap: &Gap| gap.jump(object, layout.size, metrics, (&layout.cells, &slopes));
+    let jumps: Vec<Jump> = layout.gaps.par_iter().filter_map(jump).collect();
+    let mut loads = vec![0.0f32; layout.cells.len()];
+    for jump in &jumps {
+        jump.cells.iter().for_each(|&cell| loads[cell as usize] += jump.load);
+    }
+    all.par_extend(jumps.par_iter().map(|jump| {
+        let load = jump.cells.iter().map(|&cell| loads[cell as usize]).fold(1.0, f32::max);
+        of_jump(jump, load.sqrt().recip())
+    }));
+    all
+}
+
+fn of_cell(cell: &Cell, slopes: &[[f32; 4]; 4]) -> Element {
+    let mut element = Element { links: Vec::new() };
+    for (k, read) in cell.corners.iter().enumerate() {
+        for (l, others) in cell.corners.iter().enumerate() {
+            for &(i, own) in read {
+                let further = others.iter().filter(|(j, _)| *j > i);
+                further.for_each(|&(j, other)| element.add(i, j, -own * other * slopes[k][l]));
+            }
+        }
+    }
+    element
+}
+
+/// Of a gap, with as much of the flow as its cells can bear.
+fn of_jump(jump: &Jump, part: f32) -> Element {
+    let mut element = Element { links: Vec::new() };
+    for (n, &(i, gap, flow)) in jump.terms.iter().enumerate() {
+        for &(j, other_gap, other_flow) in &jump.terms[..n] {
+            let strength =
+                part * (gap * other_flow + flow * other_gap) - jump.spring_per_mm * gap * other_gap;
+            element.add(i.min(j), i.max(j), jump.length_mm * strength);
+        }
+    }
+    element
+}
+
+impl Element {
+    fn add(&mut self, i: u32, j: u32, strength: f32) {
+        match self.links.iter_mut().find(|(a, b, _)| (*a, *b) == (i, j)) {
+            Some((_, _, sum)) => *sum += strength,
+            None => self.links.push((i, j, strength)),
+        }
+    }
+}
+
+/// All links of elements, each element as strong as the weakest of its texels: an element can only take energy from the slopes of
+/// light, whatever its strength.
+fn rows(elements: &[Element], pace: &[f32]) -> Rows {
+    let mut links: Vec<Vec<(u32, f32)>> = vec![Vec::new(); pace.len()];
+    for Element { links: own } in elements {
+        let weakest = own.iter().map(|&(i, j, _)| pace[i as usize].min(pace[j as usize])).fold(1.0, f32::min);
+        for &(i, j, strength) in own {
+            // Only one of both directions is added up; the other one is its copy.
+            let row = &mut links[i as usize];
+            match row.iter_mut().find(|(other, _)| *other == j) {
+                Some((_, sum)) => *sum += weakest * strength,
+                None => row.push((j, weakest * strength)),
+            }
+        }
+    }
+    mirrored(&links)
+}
+
+fn mirrored(upper: &[Vec<(u32, f32)>]) -> Rows {
+    let mut all: Vec<(u32, u32, f32)> = Vec::new();
+    for (i, row) in upper.iter().enumerate() {
+        all.extend(row.iter().flat_map(|&(j, link)| [(i as u32, j, link), (j, i as u32, link)]));
+    }
+    all.par_sort_unstable_by_key(|&(i, j, _)| (i, j));
+    let mut rows = Rows::default();
+    for (n, &(i, j, link)) in all.iter().enumerate() {
+        if rows.texels.last() != Some(&i) {
+            rows.texels.push(i);
+            rows.starts.push(n as u32);
+        }
+        rows.links.push((j, link));
+    }
+    rows.starts.push(all.len() as u32);
+    rows
+}

@@ -1,0 +1,166 @@
+//! Seams as gaps: along them the light of both sides is held together, so that as much flows out of one chart as into the other.
+//!
+//! Bilinear light of two charts does not quite meet at their seam. The symmetric terms of Nitsche (1971) mend that: what flows
+//! across, by the slopes of both sides, times the gap, and a spring that pulls the gap shut. The slope of a cell that a seam has left
+//! little of is a poor witness: sides count by what their cells can bear (Annavarapu, Hautefeuille & Dolbow 2012), and what cells
+//! cannot bear is left out, so that light never grows.
+
+use super::cells::{Cell, Cells};
+use super::metric::{Metric, derivatives_mm_per_texel};
+use super::shore::Shore;
+use cutis_scene::Object;
+use glam::{DMat3, DVec3, Mat4, Vec2, Vec3, Vec4};
+use rayon::prelude::*;
+
+/// Places along a seam per texel.
+const PLACES_PER_TEXEL: f32 = 2.0;
+/// Strength of the spring, by the width of a texel.
+const SPRING: f32 = 1.0;
+/// Slopes that a cell cannot bear at all, by the area of a texel.
+const UNBEARABLE: f32 = 1e6;
+
+/// A place of a seam, seen from both sides.
+#[derive(Debug, Clone)]
+pub struct Gap {
+    sides: [Side; 2],
+}
+
+/// A place of a seam, seen from one side.
+#[derive(Debug, Clone)]
+struct Side {
+    triangle: u32,
+    /// The corner of the triangle at which the seam's edge begins.
+    corner: u8,
+    cell: u32,
+    /// Place in the cell's square.
+    place: Vec2,
+    /// Part of the edge that it stands for.
+    part: f32,
+}
+
+/// A gap by texels: light on one side less that on the other, and what flows from there to here, per mm of the seam.
+#[derive(Debug, Clone)]
+pub struct Jump {
+    /// Texels, the gap's weight of each, and the flow's, 1/mm.
+    pub terms: Vec<(u32, f32, f32)>,
+    /// Length of the seam that it stands for, mm.
+    pub length_mm: f32,
+    /// Strength of the spring, 1/mm.
+    pub spring_per_mm: f32,
+    /// The cells on both sides.
+    pub cells: [u32; 2],
+    /// Part of each cell's energy that its flow takes at most.
+    pub load: f32,
+}
+
+/// Places along all seams.
+pub fn gaps(object: &Object, shore: &Shore, cells: &Cells) -> Vec<Gap> {
+    (0..object.mesh.triangles.len() as u32)
+        .into_par_iter()
+        .flat_map_iter(|triangle| (0..3u8).map(move |corner| (triangle, corner)))
+        .flat_map_iter(|(triangle, corner)| along_edge(shore, cells, triangle, corner))
+        .collect()
+}
+
+fn along_edge(shore: &Shore, cells: &Cells, triangle: u32, corner: u8) -> Vec<Gap> {
+    let Some((other, there)) = shore.ground.across(triangle, corner) else { return Vec::new() };
+    // Every seam is met twice.
+    if shore.ground.goes_on(triangle, corner) || (other, there) < (triangle, corner) {
+        return Vec::new();
+    }
+    let ([a, b], [d, c]) = (shore.ground.edge(triangle, corner), shore.ground.edge(other, there));
+    let count = (PLACES_PER_TEXEL * (b - a).length().max((d - c).length())).ceil().max(1.0) as usize;
+    let gap = |i: usize| {
+        let (along, part) = ((i as f32 + 0.5) / count as f32, 1.0 / count as f32);
+        let here = side(shore, cells, (triangle, corner), a.lerp(b, along), part)?;
+        let beyond = side(shore, cells, (other, there), c.lerp(d, along), part)?;
+        Some(Gap { sides: [here, beyond] })
+    };
+    (0..count).filter_map(gap).collect()
+}
+
+fn side(shore: &Shore, cells: &Cells, (triangle, corner): (u32, u8), at: Vec2, part: f32) -> Option<Side> {
+    let size = shore.size();
+    let origin = (at - 0.5).floor().clamp(Vec2::ZERO, Vec2::splat(size as f32 - 2.0));
+    let cell = cells.of(origin.y as usize * size + origin.x as usize, triangle)?;
+    Some(Side { triangle, corner, cell, place: at - 0.5 - origin, part })
+}
+
+impl Gap {
+    /// By texels, for the pose of the mesh, with the slopes of all cells. `None` where a side has no extent.
+    pub fn jump(
+        &self,
+        object: &Object,
+        size: usize,
+        metrics: &[Metric],
+        (cells, slopes): (&[Cell], &[Mat4]),
+    ) -> Option<Jump> {
+        let [here, beyond] = &self.sides;
+        let p = object.mesh.corners_mm(here.triangle as usize);
+        let corner = usize::from(here.corner);
+        let length_mm = (p[(corner + 1) % 3] - p[corner]).length() * here.part;
+        let (out, into) = (here.outwards(object, size, metrics)?, beyond.outwards(object, size, metrics)?);
+        let spring_per_mm = SPRING * 0.5 * (out.length() + into.length());
+        let burdens = [(here, out), (beyond, into)].map(|(side, step)| {
+            let most = UNBEARABLE * step.length_squared();
+            burden(&slopes[side.cell as usize], side.shares(step).1).min(most).max(f32::MIN_POSITIVE)
+        });
+        let sum = burdens[0] + burdens[1];
+        let load = length_mm / spring_per_mm * burdens[0] * burdens[1] / sum;
+        let cell = |side: &Side| side.cell;
+        let mut jump =
+            Jump { terms: Vec::new(), length_mm, spring_per_mm, cells: [cell(here), cell(beyond)], load };
+        jump.add(here, cells, 1.0, out * (burdens[1] / sum));
+        jump.add(beyond, cells, -1.0, -into * (burdens[0] / sum));
+        jump.load.is_finite().then_some(jump)
+    }
+}
+
+/// The most that a slope's square can be by a cell's energy: d·S⁻¹·d, where one corner stands still.
+fn burden(slopes: &Mat4, slope: Vec4) -> f32 {
+    let of = |v: Vec4| DVec3::new(f64::from(v.y), f64::from(v.z), f64::from(v.w));
+    let energy = DMat3::from_cols(of(slopes.y_axis), of(slopes.z_axis), of(slopes.w_axis));
+    let burden = of(slope).dot(energy.inverse() * of(slope));
+    if burden.is_finite() && burden > 0.0 { burden as f32 } else { f32::INFINITY }
+}
+
+impl Side {
+    /// One millimetre straight out of the triangle across its edge, in texels, as far as the metric is believed.
+    fn outwards(&self, object: &Object, size: usize, metrics: &[Metric]) -> Option<Vec2> {
+        let [xu, xv] = derivatives_mm_per_texel(object, self.triangle as usize, size)?;
+        let p = object.mesh.corners_mm(self.triangle as usize);
+        let i = usize::from(self.corner);
+        let edge = (p[(i + 1) % 3] - p[i]).try_normalize()?;
+        let inwards: Vec3 = p[(i + 2) % 3] - p[i];
+        let out = -(inwards - edge * inwards.dot(edge)).try_normalize()?;
+        // Slopes along u and v become slopes along the surface by the inverse of the metric.
+        let Metric { a, area_mm2 } = metrics[self.triangle as usize];
+        let (u, v) = (xu.dot(out), xv.dot(out));
+        let texels = Vec2::new(a.x * u + a.y * v, a.y * u + a.z * v) / area_mm2;
+        texels.is_finite().then_some(texels)
+    }
+
+    /// Shares of the corners in the light of the place, and in its slope along a step.
+    fn shares(&self, step: Vec2) -> (Vec4, Vec4) {
+        let Vec2 { x, y } = self.place;
+        let shares = Vec4::new((1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y);
+        let along_u = Vec4::new(y - 1.0, 1.0 - y, -y, y);
+        let along_v = Vec4::new(x - 1.0, -x, 1.0 - x, x);
+        (shares, along_u * step.x + along_v * step.y)
+    }
+}
+
+impl Jump {
+    fn add(&mut self, side: &Side, cells: &[Cell], sign: f32, step: Vec2) {
+        let (shares, slopes) = side.shares(step);
+        for (k, read) in cells[side.cell as usize].corners.iter().enumerate() {
+            for &(texel, weight) in read {
+                let (gap, flow) = (sign * shares[k] * weight, slopes[k] * weight);
+                match self.terms.iter_mut().find(|(known, ..)| *known == texel) {
+                    Some((_, sum, flows)) => (*sum, *flows) = (*sum + gap, *flows + flow),
+                    None => self.terms.push((texel, gap, flow)),
+                }
+            }
+        }
+    }
+}

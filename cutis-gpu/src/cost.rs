@@ -22,7 +22,7 @@ pub struct Cost {
 
 /// Reads of textures by one invocation of every entry point but those of vertices, counted in its source: one light, as many
 /// Gaussians as skin has at a size, loops as long as for most texels, the default bloom of 1080 rows.
-pub const TAPS: [(&str, u64); 34] = [
+pub const TAPS: [(&str, u64); 40] = [
     ("deform_vertices", 0),
     ("stretch_at_vertices", 0),
     ("unroll", 2),
@@ -39,6 +39,12 @@ pub const TAPS: [(&str, u64); 34] = [
     ("lay_taps", 15),
     ("blur", 11),
     ("halve", 9),
+    ("exchange", 15),
+    ("exchange_alone", 12),
+    ("add_up", 5),
+    ("halve_heat", 32),
+    ("keep_padding", 8),
+    ("show_point", 0),
     ("begin_blur", 11),
     ("blur_seven", 17),
     ("come_through", 13),

@@ -46,6 +46,15 @@ const ADD: wgpu::BlendComponent = wgpu::BlendComponent {
 impl Pipeline {
     /// Compiles a pipeline.
     pub fn new(gpu: &Gpu, blueprint: &Blueprint) -> Self {
+        Self::compiled(gpu, blueprint, wgpu::PrimitiveTopology::TriangleList)
+    }
+
+    /// Compiles one that draws a texel for every vertex.
+    pub fn of_points(gpu: &Gpu, blueprint: &Blueprint) -> Self {
+        Self::compiled(gpu, blueprint, wgpu::PrimitiveTopology::PointList)
+    }
+
+    fn compiled(gpu: &Gpu, blueprint: &Blueprint, topology: wgpu::PrimitiveTopology) -> Self {
         let Blueprint { name, source, entries, targets, additive, depth } = *blueprint;
         let module = shader(gpu, name, source);
         let blend = additive.then_some(wgpu::BlendState { color: ADD, alpha: ADD });
@@ -69,7 +78,7 @@ impl Pipeline {
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 buffers: &[],
             },
-            primitive: wgpu::PrimitiveState::default(),
+            primitive: wgpu::PrimitiveState { topology, ..wgpu::PrimitiveState::default() },
             depth_stencil,
             multisample: wgpu::MultisampleState::default(),
             fragment: (!targets.is_empty()).then_some(wgpu::FragmentState {

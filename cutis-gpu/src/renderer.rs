@@ -6,7 +6,7 @@ use crate::scene::SceneError;
 use crate::scene::slides::Slides;
 use crate::{Adapters, Gpu, GpuError, GpuScene};
 use cutis_render::lit_scene::warnings;
-use cutis_render::{Diffusion, Frame, PassTime, Progress, RenderError, Renderer, Settings, TechniqueName};
+use cutis_render::{Frame, PassTime, Progress, RenderError, Renderer, Settings, TechniqueName};
 use cutis_scene::Scene;
 use std::time::Instant;
 
@@ -36,10 +36,9 @@ impl GpuRenderer {
         Self { gpu, passes }
     }
 
-    /// Whether a technique can be drawn here, with that diffusion.
-    pub fn knows(technique: TechniqueName, diffusion: Diffusion) -> bool {
-        let flows = technique == TechniqueName::TextureSpace && diffusion == Diffusion::HeatFlow;
-        Inside::knows(technique) && !flows
+    /// Whether a technique can be drawn here.
+    pub fn knows(technique: TechniqueName) -> bool {
+        Inside::knows(technique)
     }
 
     /// Finds out whether a scene can be drawn here.
@@ -60,9 +59,9 @@ impl GpuRenderer {
         settings: &Settings,
         progress: &dyn Progress,
     ) -> Result<GpuScene, SceneError> {
-        let Settings { technique, diffusion, .. } = *settings;
-        if !Self::knows(technique, diffusion) {
-            let reason = format!("{technique} by {diffusion} is not drawn on graphics adapters");
+        let technique = settings.technique;
+        if !Self::knows(technique) {
+            let reason = format!("the technique {technique} is not drawn on graphics adapters");
             return Err(RenderError::Backend { reason }.into());
         }
         GpuScene::new(&self.gpu, &self.passes, scene, settings, progress)

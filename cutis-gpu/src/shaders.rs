@@ -80,6 +80,12 @@ pub const TAPS: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "passes/taps.w
 pub const BLUR: &str = wgsl!("lib/tiles.wgsl", "passes/blur.wgsl");
 /// Pass `blur`: to half the size.
 pub const HALVE: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "passes/halve.wgsl");
+/// Pass `heat flow`: from texel to texel.
+pub const HEAT_FLOW: &str = wgsl!("lib/tiles.wgsl", "lib/heat.wgsl", "passes/heat_flow/step.wgsl");
+/// Pass `heat flow`: to half the size.
+pub const HEAT_HALVE: &str = wgsl!("lib/tiles.wgsl", "passes/heat_flow/halve.wgsl");
+/// Pass `heat flow`: at the edges of charts.
+pub const HEAT_ROWS: &str = wgsl!("lib/heat.wgsl", "passes/heat_flow/rows.wgsl");
 /// Pass `blur` of the technique `texture-blur`.
 pub const SEVEN_TAPS: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "passes/seven_taps.wgsl");
 /// Pass `transmission` of the technique `texture-blur`.
@@ -187,7 +193,7 @@ pub fn resolve(technique: TechniqueName) -> &'static str {
 }
 
 /// All of them by name.
-pub const ALL: [(&str, &str); 27] = [
+pub const ALL: [(&str, &str); 30] = [
     ("deform", DEFORM),
     ("stretch", STRETCH),
     ("atlas", ATLAS),
@@ -200,6 +206,9 @@ pub const ALL: [(&str, &str); 27] = [
     ("taps", TAPS),
     ("blur", BLUR),
     ("halve", HALVE),
+    ("heat flow", HEAT_FLOW),
+    ("heat flow, halving", HEAT_HALVE),
+    ("heat flow, edges", HEAT_ROWS),
     ("seven taps", SEVEN_TAPS),
     ("thin parts", THIN_PARTS),
     ("gather", GATHER),

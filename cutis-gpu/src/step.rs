@@ -5,7 +5,7 @@ use crate::pipeline::{Binding, ComputePipeline, Pipeline};
 use crate::timing::Stamps;
 
 /// Most targets of a draw.
-const MAX_TARGETS: usize = 3;
+const MAX_TARGETS: usize = 4;
 
 /// One step of a frame.
 #[expect(clippy::large_enum_variant, reason = "nearly all steps are draws")]

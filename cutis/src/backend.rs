@@ -2,7 +2,7 @@
 
 use crate::talk;
 use cutis_gpu::{Adapters, GpuRenderer};
-use cutis_render::{CpuRenderer, Diffusion, RenderError, Renderer, TechniqueName};
+use cutis_render::{CpuRenderer, RenderError, Renderer, TechniqueName};
 use cutis_scene::Scene;
 use miette::{Result, miette};
 use std::fmt;
@@ -26,13 +26,9 @@ impl Backend {
     ///
     /// # Errors
     /// If the GPU is asked for a technique that it does not know.
-    pub fn check(self, technique: TechniqueName, diffusion: Diffusion) -> Result<()> {
-        if self == Backend::Gpu && !GpuRenderer::knows(technique, diffusion) {
-            return Err(miette!(
-                help = "leave --backend out, or say cpu",
-                "{}",
-                unknown(technique, diffusion)
-            ));
+    pub fn check(self, technique: TechniqueName) -> Result<()> {
+        if self == Backend::Gpu && !GpuRenderer::knows(technique) {
+            return Err(miette!(help = "leave --backend out, or say cpu", "{}", unknown(technique)));
         }
         Ok(())
     }
@@ -51,33 +47,23 @@ impl Backend {
     ///
     /// # Errors
     /// If the GPU is asked for and there is none.
-    pub fn renderer_that_knows(
-        self,
-        technique: TechniqueName,
-        diffusion: Diffusion,
-        scene: &Scene,
-    ) -> Result<Box<dyn Renderer>> {
-        if self == Backend::Gpu && !GpuRenderer::knows(technique, diffusion) {
-            talk::tell(&format!("backend gpu: the processor, because {}", unknown(technique, diffusion)));
+    pub fn renderer_that_knows(self, technique: TechniqueName, scene: &Scene) -> Result<Box<dyn Renderer>> {
+        if self == Backend::Gpu && !GpuRenderer::knows(technique) {
+            talk::tell(&format!("backend gpu: the processor, because {}", unknown(technique)));
             return Ok(Box::new(CpuRenderer));
         }
-        self.renderer(technique, diffusion, scene)
+        self.renderer(technique, scene)
     }
 
     /// The renderer for a technique and a scene.
     ///
     /// # Errors
     /// If the GPU is asked for and there is none.
-    pub fn renderer(
-        self,
-        technique: TechniqueName,
-        diffusion: Diffusion,
-        scene: &Scene,
-    ) -> Result<Box<dyn Renderer>> {
+    pub fn renderer(self, technique: TechniqueName, scene: &Scene) -> Result<Box<dyn Renderer>> {
         match self {
             Backend::Cpu => Ok(Box::new(CpuRenderer)),
             Backend::Gpu => Ok(Box::new(on_any_adapter()?)),
-            Backend::Auto => Ok(on_hardware(technique, diffusion, scene).unwrap_or_else(|why| {
+            Backend::Auto => Ok(on_hardware(technique, scene).unwrap_or_else(|why| {
                 talk::tell(&format!("backend auto: the processor, because {why}"));
                 Box::new(CpuRenderer)
             })),
@@ -96,13 +82,9 @@ impl fmt::Display for Backend {
 }
 
 /// A real graphics processor, or why there is none to be had.
-fn on_hardware(
-    technique: TechniqueName,
-    diffusion: Diffusion,
-    scene: &Scene,
-) -> std::result::Result<Box<dyn Renderer>, String> {
-    if !GpuRenderer::knows(technique, diffusion) {
-        return Err(unknown(technique, diffusion));
+fn on_hardware(technique: TechniqueName, scene: &Scene) -> std::result::Result<Box<dyn Renderer>, String> {
+    if !GpuRenderer::knows(technique) {
+        return Err(unknown(technique));
     }
     GpuRenderer::check(scene).map_err(|error| error.to_string())?;
     let renderer = GpuRenderer::new(Adapters::Hardware).map_err(|error| error.to_string())?;
@@ -114,11 +96,8 @@ fn on_any_adapter() -> Result<GpuRenderer> {
         .map_err(|error| miette!(help = "leave --backend out, or say cpu", "{error}"))
 }
 
-/// Why a graphics adapter does not draw a technique with a diffusion.
-pub fn unknown(technique: TechniqueName, diffusion: Diffusion) -> String {
-    if GpuRenderer::knows(technique, Diffusion::Separable) {
-        return format!("the diffusion {diffusion} is not drawn on graphics adapters");
-    }
+/// Why a graphics adapter does not draw a technique.
+pub fn unknown(technique: TechniqueName) -> String {
     format!("the technique {technique} is not drawn on graphics adapters")
 }
 

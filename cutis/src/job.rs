@@ -48,7 +48,7 @@ impl Job {
         let paper = paper.transpose()?;
         let mut warnings = Vec::new();
         let settings = settings(args, paper, &mut warnings)?;
-        backend.check(settings.technique, settings.diffusion)?;
+        backend.check(settings.technique)?;
         let film = film(args)?;
         let threads = threads_in_range(args.threads)?;
         let source = source(args, paper)?;

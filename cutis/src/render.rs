@@ -63,7 +63,7 @@ fn say_report(report: &DiffusionReport) -> Result<()> {
 
 /// The picture, and who has drawn it in the end.
 fn draw(scene: &Scene, job: &Job, verbose: u8) -> Result<(Box<dyn Renderer>, Frame)> {
-    let mut renderer = job.backend.renderer(job.settings.technique, job.settings.diffusion, scene)?;
+    let mut renderer = job.backend.renderer(job.settings.technique, scene)?;
     loop {
         tracing::info!("backend {}, {}", renderer.backend(), renderer.adapter());
         let bar = Bar::new(verbose);

@@ -70,20 +70,3 @@ fn gpu_takes_whatever_adapter_there_is_and_names_it() {
     let picture = image::open(folder.path().join("cutis.png")).expect("a picture").to_rgba8();
     assert!(picture.pixels().filter(|p| p.0[0] > 60).count() > 200, "the head is lit");
 }
-
-/// What adapters do not draw is refused by name, and drawn by the processor where the choice is free.
-#[test]
-fn heat_flow_is_the_processor_s() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let (first, count) = BACKEND_FLAGS;
-    let flows = |backend: &str| {
-        let mut command = cutis(folder.path());
-        command.args(&TINY[..first]).args(&TINY[first + count..]);
-        command.args(["--backend", backend, "--diffusion", "heat-flow", "--json"]).output().expect("starts")
-    };
-    let refused = flows("gpu");
-    assert_eq!(refused.status.code(), Some(2), "{}", stderr(&refused));
-    assert!(stderr(&refused).contains("the diffusion heat-flow is not drawn on graphics adapters"));
-    let drawn = json(&flows("auto"));
-    assert_eq!((&drawn["backend"], &drawn["diffusion"]), (&"cpu".into(), &"heat-flow".into()));
-}

@@ -8,6 +8,7 @@ pub mod depth_map;
 pub mod diffusion;
 pub mod downsample;
 pub mod gather;
+pub mod heat_flow;
 pub mod inside;
 pub mod irradiance;
 pub mod irradiance_image;
@@ -63,6 +64,8 @@ pub struct Passes {
     pub shares: shares::SharesPass,
     /// Pass `blur`.
     pub diffusion: diffusion::DiffusionPass,
+    /// Pass `heat flow`.
+    pub heat_flow: heat_flow::HeatFlowPass,
     /// Pass `blur` of the technique `texture-blur`.
     pub seven_taps: seven_taps::SevenTapsPass,
     /// Pass `transmission` of the technique `texture-blur`.
@@ -100,6 +103,7 @@ impl Passes {
             irradiance: irradiance::IrradiancePass::new(gpu),
             shares: shares::SharesPass::new(gpu),
             diffusion: diffusion::DiffusionPass::new(gpu, &samplers),
+            heat_flow: heat_flow::HeatFlowPass::new(gpu, &samplers),
             seven_taps: seven_taps::SevenTapsPass::new(gpu),
             thin_parts: thin_parts::ThinPartsPass::new(gpu),
             gather: gather::GatherPass::new(gpu),

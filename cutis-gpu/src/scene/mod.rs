@@ -135,7 +135,7 @@ impl GpuScene {
         let sizes = atlas_sizes(&scene.objects, settings.irradiance_size);
         let mut steps = Vec::new();
         for (number, (object, size)) in (0..).zip(scene.objects.iter().zip(sizes)) {
-            let prepared = Prepared::new(object, size, chosen_kernel(&object.material, settings)?);
+            let prepared = Prepared::new(object, size, chosen_kernel(&object.material, settings)?, settings);
             if !progress.goes_on() {
                 return Err(RenderError::Stopped.into());
             }

@@ -18,18 +18,19 @@ use crate::passes::resolve::ResolveInputs;
 use crate::passes::shares::ShareGroup;
 use crate::passes::transmission::TransmissionInputs;
 use crate::passes::visibility::{Group, visibility_map};
-use crate::passes::{LIGHTS_TOGETHER, Passes, openness};
+use crate::passes::{LIGHTS_TOGETHER, Passes, heat_flow, openness};
 use crate::step::Step;
 use bytemuck::Zeroable;
 use cutis_render::lit_scene::opaque_mm;
 use cutis_render::passes::atlas::Atlas;
 use cutis_render::passes::diffusion::{Action, median_texel_mm, plan};
+use cutis_render::passes::heat_flow::HeatFlow;
 use cutis_render::passes::seam_map::Seams;
 use cutis_render::passes::stretch::stretch_mm_per_texel;
 use cutis_render::passes::transmission::smoothing_steps;
 use cutis_render::prepare::rho_dt::{COSINES, ROUGHNESSES};
 use cutis_render::prepare::{Kernel, RhoDt};
-use cutis_render::{Settings, TechniqueName};
+use cutis_render::{Diffusion, Settings, TechniqueName};
 use cutis_scene::Object;
 use glam::Vec4;
 use std::sync::Arc;
@@ -46,14 +47,20 @@ pub struct Prepared {
     pub kernel: Kernel,
     /// What the surface lets through.
     pub rho_dt: RhoDt,
+    /// How heat flows over it, where light is spread like that.
+    pub flow: Option<HeatFlow>,
 }
 
 impl Prepared {
     /// For an atlas of `size` texels.
-    pub fn new(object: &Object, size: u32, kernel: Kernel) -> Self {
+    pub fn new(object: &Object, size: u32, kernel: Kernel, settings: &Settings) -> Self {
         let atlas = Atlas::new(object, size as usize);
-        let texel_mm = median_texel_mm(&atlas.charts, &stretch_mm_per_texel(object, &atlas));
-        Self { atlas, texel_mm, kernel, rho_dt: RhoDt::new(object.material.f0) }
+        let stretch_mm = stretch_mm_per_texel(object, &atlas);
+        let texel_mm = median_texel_mm(&atlas.charts, &stretch_mm);
+        let flows = settings.light_inside() == TechniqueName::TextureSpace
+            && settings.diffusion == Diffusion::HeatFlow;
+        let flow = flows.then(|| HeatFlow::new(object, &atlas, &stretch_mm, &kernel.variances_mm2));
+        Self { atlas, texel_mm, kernel, rho_dt: RhoDt::new(object.material.f0), flow }
     }
 }
 
@@ -111,9 +118,10 @@ impl ObjectMaps {
         prepared: Prepared,
         settings: &Settings,
     ) -> Result<(Self, ObjectSteps), SceneError> {
-        let Prepared { atlas: unrolled, texel_mm, kernel, rho_dt } = prepared;
+        let Prepared { atlas: unrolled, texel_mm, kernel, rho_dt, flow } = prepared;
         let size = unrolled.size as u32;
-        let plan = shortened(&plan(unrolled.size, texel_mm, &kernel.variances_mm2), texel_mm);
+        let separable = || shortened(&plan(unrolled.size, texel_mm, &kernel.variances_mm2), texel_mm);
+        let plan = flow.as_ref().map_or_else(separable, heat_flow::actions);
         tracing::debug!("plan of '{}' with texels of {texel_mm} mm: {plan:?}", object.name);
         let charts = ChartPyramid::new(gpu, &unrolled.charts, halvings(&plan));
         let seams = Seams::of(object, Arc::clone(&unrolled.charts));
@@ -154,7 +162,7 @@ impl ObjectMaps {
             inside,
         };
         let light = Lighting { gpu, passes, shared, number, maps: &maps };
-        let shares = light.steps(&plan, &mut steps);
+        let shares = light.steps((&plan, flow.as_ref()), &mut steps);
         if maps.technique == TechniqueName::TextureSpace {
             maps.add_spread(gpu, passes, shared, (number, texel_mm), shares.as_ref(), &mut steps);
         }
@@ -253,7 +261,7 @@ struct Lighting<'a> {
 
 impl Lighting<'_> {
     /// Adds its steps by a plan. Gives each light's share, where there are several.
-    fn steps(&self, plan: &[Action], all: &mut ObjectSteps) -> Option<Map> {
+    fn steps(&self, (plan, flow): (&[Action], Option<&HeatFlow>), all: &mut ObjectSteps) -> Option<Map> {
         let steps = &mut all.light;
         let Self { gpu, passes, shared, maps, .. } = *self;
         let size = maps.charts.sizes[0].size;
@@ -291,6 +299,10 @@ impl Lighting<'_> {
             }));
             shares
         });
+        if let Some(flow) = flow {
+            steps.extend(passes.heat_flow.steps(gpu, &maps.charts.sizes, &maps.levels, flow));
+            return shares;
+        }
         let (charts, maps_between) = (&maps.charts.sizes, (&maps.atlas.stretch, &maps.local));
         let diffusion = passes.diffusion.steps(gpu, charts, &maps.levels, maps_between, plan);
         steps.extend(diffusion.blurs);

@@ -58,7 +58,7 @@ impl Drawn {
         verbose: u8,
     ) -> Result<Self> {
         tracing::info!("{}", name.trim_end_matches([':', ' ']));
-        let renderer = backend.renderer_that_knows(settings.technique, settings.diffusion, scene)?;
+        let renderer = backend.renderer_that_knows(settings.technique, scene)?;
         let counts_alone = forget_peak_memory();
         let (start, bar) = (Instant::now(), Bar::named(name, verbose));
         let frame = renderer.render(scene, settings, &bar);

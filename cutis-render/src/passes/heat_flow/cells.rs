@@ -90,15 +90,9 @@ impl Moments {
             let uv = sign(xi) * sign(yj) * mixed(yi, xj) + sign(yi) * sign(xj) * mixed(yj, xi);
             metric.a.x * uu + metric.a.y * uv + metric.a.z * vv
         };
-        // Either half is written once, so that both are the same to the last bit.
-        let mut all = [[0.0; 4]; 4];
-        for i in 0..4 {
-            for j in i..4 {
-                all[i][j] = of(i, j);
-                all[j][i] = all[i][j];
-            }
-        }
-        Mat4::from_cols_array_2d(&all)
+        // The same to the last bit for both orders of a pair.
+        let ordered = |i: usize, j: usize| of(i.min(j), i.max(j));
+        Mat4::from_cols_array(&std::array::from_fn(|n| ordered(n / 4, n % 4)))
     }
 }
 

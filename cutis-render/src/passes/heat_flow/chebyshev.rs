@@ -7,7 +7,7 @@
 use std::f64::consts::PI;
 
 /// Part of a wave by which the sum may miss it.
-const ERROR: f64 = 1e-4;
+const ERROR: f64 = 1e-3;
 /// Waves on texels of width h fall at k² (1 - k² h²/12), not k²; this gives that part back.
 const LAG: f64 = 1.0 / 12.0;
 
@@ -16,7 +16,7 @@ pub fn coefficients(time_mm2: f64, fastest_rate_per_mm2: f64, texel_mm: f64) -> 
     let lag_mm2 = LAG * texel_mm * texel_mm;
     let fall = |rate: f64| (-time_mm2 * (rate + lag_mm2 * rate * rate)).exp();
     let z = 0.5 * time_mm2 * fastest_rate_per_mm2 * (1.0 + 2.0 * lag_mm2 * fastest_rate_per_mm2);
-    let places = 2 * (2.0 * z * (2.0 / ERROR).ln()).sqrt().ceil() as usize + 24;
+    let places = 2 * (2.0 * z * (2.0 / ERROR).ln()).sqrt().ceil() as usize + 32;
     let angle = |n: usize| PI * (n as f64 + 0.5) / places as f64;
     let values: Vec<f64> =
         (0..places).map(|n| fall(0.5 * fastest_rate_per_mm2 * (1.0 - angle(n).cos()))).collect();
@@ -25,7 +25,9 @@ pub fn coefficients(time_mm2: f64, fastest_rate_per_mm2: f64, texel_mm: f64) -> 
         if k == 0 { sum / places as f64 } else { 2.0 * sum / places as f64 }
     };
     let mut all: Vec<f64> = (0..places / 2 + 12).map(of).collect();
-    while all.len() > 1 && all.last().is_some_and(|last| last.abs() < 0.1 * ERROR) {
+    let mut left_out = 0.0;
+    while let Some(last) = all.last().filter(|last| left_out + last.abs() < ERROR) {
+        left_out += last.abs();
         all.pop();
     }
     let sum: f64 = all.iter().sum();

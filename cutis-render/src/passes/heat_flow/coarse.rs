@@ -1,6 +1,6 @@
 //! From a map of light to one of half the size: every texel gives its energy to the four coarse ones around it.
 
-use super::exchange::Layout;
+use super::exchange::{Layout, Rows};
 use super::row::Light;
 use super::shore::{Shore, centre, corners};
 use crate::passes::atlas::{Atlas, NO_CHART};
@@ -63,6 +63,33 @@ impl Halving {
             .map(|&a| a as f32)
             .collect();
         halving
+    }
+
+    /// What those coarse texels take, by fine texels, that are not in the middle of four whole squares or take from elsewhere, too; it
+    /// sums to 1 for each.
+    pub fn rows(&self) -> Rows {
+        let size = self.size;
+        let mut all: Vec<(u32, u32, f32)> =
+            self.rest.iter().map(|&(fine, to, weight)| (to, fine, weight)).collect();
+        let mut takes_more = vec![false; size * size];
+        all.iter().for_each(|(to, ..)| takes_more[*to as usize] = true);
+        let whole =
+            |texel: usize, back: usize| texel.checked_sub(back).is_some_and(|first| self.whole[first]);
+        let is_inner = |texel: usize| {
+            !takes_more[texel] && [0, 1, size, size + 1].iter().all(|&back| whole(texel, back))
+        };
+        for first in (0..self.whole.len()).filter(|&first| self.whole[first]) {
+            for (k, to) in corners(first, size).into_iter().enumerate() {
+                if !is_inner(to) {
+                    let under = self.under(first).into_iter().enumerate();
+                    all.extend(under.map(|(i, fine)| (to as u32, fine as u32, part(i, k))));
+                }
+            }
+        }
+        for (to, fine, weight) in &mut all {
+            *weight *= self.fine_mm2[*fine as usize] / self.areas_mm2[*to as usize];
+        }
+        Rows::new(all)
     }
 
     /// The light of coarse texels: what they get, by their area.

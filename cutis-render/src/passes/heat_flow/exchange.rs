@@ -15,7 +15,7 @@ use std::ops::Range;
 
 /// What a texel at the edge of a chart may give, per time, by the area of a usual texel: thin strips would set the pace for all
 /// others.
-const FASTEST: f32 = 8.0;
+const FASTEST: f32 = 6.7;
 /// What edges of charts need; it depends on the layout of the texture, and stays when the surface moves.
 #[derive(Debug, Clone)]
 pub struct Layout {
@@ -161,6 +161,21 @@ impl Exchange {
 }
 
 impl Rows {
+    /// Of entries in any order: a texel, the one at the other end, and the strength.
+    pub fn new(mut all: Vec<(u32, u32, f32)>) -> Self {
+        all.par_sort_unstable_by_key(|&(texel, other, _)| (texel, other));
+        let mut rows = Self::default();
+        for (n, &(texel, other, strength)) in all.iter().enumerate() {
+            if rows.texels.last() != Some(&texel) {
+                rows.texels.push(texel);
+                rows.starts.push(n as u32);
+            }
+            rows.links.push((other, strength));
+        }
+        rows.starts.push(all.len() as u32);
+        rows
+    }
+
     /// Every texel with its links.
     pub fn iter(&self) -> impl Iterator<Item = (usize, &[(u32, f32)])> {
         self.texels
@@ -276,15 +291,5 @@ fn mirrored(upper: &[Vec<(u32, f32)>]) -> Rows {
     for (i, row) in upper.iter().enumerate() {
         all.extend(row.iter().flat_map(|&(j, link)| [(i as u32, j, link), (j, i as u32, link)]));
     }
-    all.par_sort_unstable_by_key(|&(i, j, _)| (i, j));
-    let mut rows = Rows::default();
-    for (n, &(i, j, link)) in all.iter().enumerate() {
-        if rows.texels.last() != Some(&i) {
-            rows.texels.push(i);
-            rows.starts.push(n as u32);
-        }
-        rows.links.push((j, link));
-    }
-    rows.starts.push(all.len() as u32);
-    rows
+    Rows::new(all)
 }

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 /// Heat crosses texels narrower than this part of the usual one as if they were that wide: slivers would set the pace for all
 /// others. Their areas, and what flows along them, are true.
-const SMALLEST: f32 = 0.58;
+const SMALLEST: f32 = 0.63;
 /// Largest cosine between the axes that is believed.
 const MOST_SHEAR: f32 = 0.9;
 

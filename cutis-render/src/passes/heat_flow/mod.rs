@@ -10,13 +10,13 @@
 
 mod cells;
 mod chebyshev;
-mod coarse;
-mod exchange;
+pub mod coarse;
+pub mod exchange;
 mod gaps;
 mod metric;
 mod padding;
 mod row;
-mod shore;
+pub mod shore;
 mod walk;
 
 use crate::passes::atlas::{Atlas, ChartMap};
@@ -44,19 +44,23 @@ const BILINEAR_TEXEL2: f32 = 1.0 / 6.0;
 /// Heat flow on the atlas of one object, for the variances of one kernel.
 #[derive(Debug, Clone)]
 pub struct HeatFlow {
-    levels: Vec<Level>,
+    /// Maps by their size, each half of the one before.
+    pub levels: Vec<Level>,
 }
 
 /// A size of the maps.
 #[derive(Debug, Clone)]
-struct Level {
-    charts: Arc<ChartMap>,
-    exchange: Exchange,
-    padding: Vec<(u32, Read)>,
+pub struct Level {
+    /// Its charts.
+    pub charts: Arc<ChartMap>,
+    /// Who gives how much heat to whom.
+    pub exchange: Exchange,
+    /// Texels of the padding, and what they hold.
+    pub padding: Vec<(u32, Read)>,
     /// From the map of twice the size.
-    halving: Option<Halving>,
+    pub halving: Option<Halving>,
     /// Coefficients of every time that is flown here.
-    times: Vec<Vec<f32>>,
+    pub times: Vec<Vec<f32>>,
 }
 
 impl HeatFlow {
@@ -82,7 +86,8 @@ impl HeatFlow {
             let halved = if levels.len() == 1 { 0.0 } else { added_texel2 - BILINEAR_TEXEL2 };
             added_texel2 = 0.25 * halved + ADDED_TEXEL2 + BILINEAR_TEXEL2;
             texel_mm *= 2.0;
-            let coarse = Atlas::new(object, atlas.size / 2);
+            let charts = Arc::new(atlas.charts.halved());
+            let coarse = Atlas { charts, ..Atlas::new(object, atlas.size / 2) };
             fine = Some(std::mem::replace(&mut atlas, coarse));
         }
     }

@@ -46,6 +46,12 @@ pub fn flown<L: Light>(exchange: &Exchange, times: &[Vec<f32>], light: &[L]) -> 
     sums
 }
 
+/// A row of texels of the polynomial before and of the sums, with the part that is added to each.
+struct Row<'a, L> {
+    before: &'a mut [L],
+    sums: Vec<(f32, &'a mut [L])>,
+}
+
 /// Adds `parts` of what there is now to the sums, or begins them, and turns the polynomial before it into the next: a `factor`
 /// times x of this one less a `part` of that.
 fn step<L: Light>(
@@ -59,12 +65,12 @@ fn step<L: Light>(
 ) {
     let size = exchange.size;
     let speed = 2.0 / exchange.fastest_rate;
-    let mut rows: Vec<(&mut [L], Vec<(f32, &mut [L])>)> =
-        before.chunks_mut(size).map(|row| (row, Vec::with_capacity(parts.len()))).collect();
-    for (sum, &part) in sums.iter_mut().zip(parts).filter(|(_, part)| **part != 0.0) {
-        rows.iter_mut().zip(sum.chunks_mut(size)).for_each(|((_, all), row)| all.push((part, row)));
+    let mut rows: Vec<Row<L>> =
+        before.chunks_mut(size).map(|before| Row { before, sums: Vec::with_capacity(parts.len()) }).collect();
+    for (sum, &part) in sums.iter_mut().zip(parts).filter(|(_, part)| begins || **part != 0.0) {
+        rows.iter_mut().zip(sum.chunks_mut(size)).for_each(|(row, sum)| row.sums.push((part, sum)));
     }
-    rows.par_iter_mut().enumerate().for_each(|(y, (row, sums))| {
+    rows.par_iter_mut().enumerate().for_each(|(y, Row { before: row, sums })| {
         let here = &now[y * size..(y + 1) * size];
         for run in &exchange.runs[y] {
             for (part, sum) in sums.iter_mut() {

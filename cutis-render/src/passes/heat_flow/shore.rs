@@ -49,7 +49,8 @@ impl<'a> Shore<'a> {
         let size = atlas.size;
         let mut ground = Ground::new(object, size);
         let is_own = |i: usize| {
-            let uv = atlas.uv_under(object, i);
+            // A halved map of charts may have given the texel to another one.
+            let uv = atlas.uv_under(object, i).filter(|_| is_of_its_chart(object, atlas, i));
             uv.is_some_and(|uv| (uv * size as f32 - centre(i, size)).length() < CENTRED_TEXELS)
         };
         let own: Vec<bool> = (0..size * size).into_par_iter().map(is_own).collect();
@@ -83,13 +84,16 @@ impl<'a> Shore<'a> {
         let size = self.size();
         (0..size * size)
             .into_par_iter()
-            .filter(|&i| self.atlas.surface[i].triangle != NO_CHART && !self.own[i])
+            .filter(|&i| self.atlas.charts.chart[i] != NO_CHART && !self.own[i])
             .filter_map(|i| {
-                let from = self.atlas.uv_under(self.object, i)? * size as f32;
-                let arrival = self.ground.walk(self.atlas.surface[i].triangle, from, centre(i, size) - from);
+                let across = || {
+                    let from = self.atlas.uv_under(self.object, i)? * size as f32;
+                    self.read(&self.ground.walk(self.atlas.surface[i].triangle, from, centre(i, size) - from))
+                };
+                let read = if is_of_its_chart(self.object, self.atlas, i) { across() } else { None };
                 // Where nothing can be read there, what is nearest on this side goes on.
                 let beside = || Some(vec![(self.beside(i)? as u32, 1.0)]);
-                Some((i as u32, self.read(&arrival).or_else(beside)?))
+                Some((i as u32, read.or_else(beside)?))
             })
             .collect()
     }
@@ -166,6 +170,12 @@ impl<'a> Shore<'a> {
         let chart = self.object.charts.of_triangle[triangle as usize];
         self.own[texel] && self.atlas.charts.chart[texel] == chart
     }
+}
+
+/// Whether the surface under a texel is of the chart that the texel belongs to.
+fn is_of_its_chart(object: &Object, atlas: &Atlas, i: usize) -> bool {
+    let triangle = atlas.surface[i].triangle;
+    triangle != NO_CHART && object.charts.of_triangle[triangle as usize] == atlas.charts.chart[i]
 }
 
 /// The centre of a texel, texels.

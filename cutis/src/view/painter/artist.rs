@@ -127,13 +127,13 @@ impl Artist {
         subject: &Subject,
         watch: &Watch,
     ) -> Result<Drawn, RenderError> {
-        let (technique, diffusion) = (subject.look.drawing.technique, subject.look.drawing.diffusion);
+        let technique = subject.look.drawing.technique;
         let backend = subject.look.drawing.backend;
         if backend == Backend::Cpu {
             return self.cpu.draw(subject, watch);
         }
-        if !GpuRenderer::knows(technique, diffusion) {
-            return self.on_processor(subject, watch, &unknown(technique, diffusion));
+        if !GpuRenderer::knows(technique) {
+            return self.on_processor(subject, watch, &unknown(technique));
         }
         match self.gpu.draw(devices, subject, watch) {
             Ok(drawn) => Ok(drawn),

@@ -1,0 +1,75 @@
+// A stage of heat flow: from the last two polynomials of the exchange to the next.
+
+/// The polynomial that is known last, and the one before it.
+@group(0) @binding(2) var now: texture_2d<f32>;
+@group(0) @binding(3) var before: texture_2d<f32>;
+/// What of each neighbour's difference a texel takes at once, counter-clockwise: from the east, and from the west on.
+@group(0) @binding(4) var from_east: texture_2d<f32>;
+@group(0) @binding(5) var from_west: texture_2d<f32>;
+/// Sampled, a texel costs adapters without texture units half of what loading it does.
+@group(0) @binding(13) var nearest: sampler;
+
+struct Stage {
+    /// What sums take of the polynomial that is known last, …
+    parts: vec4f,
+    /// … of the one before, …
+    parts_before: vec4f,
+    /// … and of what they hold: 0 to begin with, then 1.
+    kept: vec4f,
+    /// The next polynomial: so many times x of this one …
+    factor: f32,
+    /// … less so much of the one before.
+    part: f32,
+    /// Width and height of the map, texels.
+    size: u32,
+    /// Another one for every stage.
+    seed: u32,
+}
+
+/// One of the two nearest values that 16 bits hold, at random, by how near they are. Some adapters round towards zero where they
+/// store, and rounding to the nearest makes the same error in neighbours: over the stages both would grow.
+fn rounded(light: vec4f, texel: vec2i) -> vec4f {
+    return bitcast<vec4f>((bitcast<vec4u>(light) + (noise(texel) & vec4u(0x1fffu))) & vec4u(0xffffe000u));
+}
+
+/// Random bits, others for every texel and stage.
+fn noise(texel: vec2i) -> vec4u {
+    var h = (u32(texel.x) * 0x9E3779B1u) ^ (u32(texel.y) * 0x85EBCA77u) ^ stage.seed;
+    h = (h ^ (h >> 15u)) * 0x2C1B3C6Du;
+    h ^= h >> 13u;
+    return vec4u(h, h >> 6u, h >> 12u, h >> 18u);
+}
+
+fn known(uv: vec2f, own: vec4f) -> vec4f {
+    return textureSampleLevel(now, nearest, uv, 0.0) - own;
+}
+
+/// The last two polynomials at a texel.
+struct Here {
+    texel: vec2i,
+    uv: vec2f,
+    now: vec4f,
+    before: vec4f,
+}
+
+fn here(texel: vec2i) -> Here {
+    let uv = (vec2f(texel) + 0.5) / f32(stage.size);
+    return Here(texel, uv, textureSampleLevel(now, nearest, uv, 0.0), textureSampleLevel(before, nearest, uv, 0.0));
+}
+
+/// The next polynomial, with what comes from further away.
+fn next(at: Here, further: vec4f) -> vec4f {
+    let step = 1.0 / f32(stage.size);
+    let east = textureSampleLevel(from_east, nearest, at.uv, 0.0);
+    let west = textureSampleLevel(from_west, nearest, at.uv, 0.0);
+    var moved = at.now + further;
+    moved += known(at.uv + vec2f(step, 0.0), at.now) * east.x;
+    moved += known(at.uv + vec2f(step, step), at.now) * east.y;
+    moved += known(at.uv + vec2f(0.0, step), at.now) * east.z;
+    moved += known(at.uv + vec2f(-step, step), at.now) * east.w;
+    moved += known(at.uv + vec2f(-step, 0.0), at.now) * west.x;
+    moved += known(at.uv + vec2f(-step, -step), at.now) * west.y;
+    moved += known(at.uv + vec2f(0.0, -step), at.now) * west.z;
+    moved += known(at.uv + vec2f(step, -step), at.now) * west.w;
+    return rounded(stage.factor * moved - stage.part * at.before, at.texel);
+}

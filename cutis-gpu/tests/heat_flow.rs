@@ -1,0 +1,105 @@
+//! Heat flow on the device against the processor: polynomial by polynomial, sums, halvings and the padding.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod common;
+
+use common::{head_in_the_studio, read, renderer};
+use cutis_gpu::GpuRenderer;
+use cutis_gpu::map::half_bytes;
+use cutis_gpu::passes::heat_flow::actions;
+use cutis_gpu::passes::levels::Levels;
+use cutis_gpu::scene::charts::ChartPyramid;
+use cutis_render::passes::atlas::{Atlas, NO_CHART};
+use cutis_render::passes::heat_flow::HeatFlow;
+use cutis_render::passes::stretch::stretch_mm_per_texel;
+use cutis_scene::Object;
+use glam::Vec4;
+
+const SIZE: usize = 512;
+
+/// Light in squares of ten millimetres, with a different channel each way.
+fn squares(object: &Object, atlas: &Atlas) -> Vec<Vec4> {
+    let lit = |i: usize| {
+        let Some(point) = atlas.surface_point(object, i) else { return Vec4::ZERO };
+        let cells = (point.position_mm / 10.0).floor().as_ivec3();
+        let on = |n: i32| if n.rem_euclid(2) == 0 { 1.0 } else { 0.125 };
+        Vec4::new(
+            on(cells.x),
+            on(cells.y),
+            on(cells.x + cells.y + cells.z),
+            3.0 + point.position_mm.x / 100.0,
+        )
+    };
+    (0..atlas.size * atlas.size).map(lit).collect()
+}
+
+/// All levels but the first, as the device makes them.
+fn flown(renderer: &GpuRenderer, atlas: &Atlas, flow: &HeatFlow, light: &[Vec4]) -> Vec<Vec<Vec4>> {
+    let (gpu, passes) = common::parts(renderer);
+    let charts = ChartPyramid::new(gpu, &atlas.charts, flow.levels.len()).sizes;
+    let levels = Levels::new(gpu, &charts, 1, &actions(flow));
+    levels.all[0].light.write(gpu, 0, &half_bytes(light.iter().copied()));
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    let steps = passes.heat_flow.steps(gpu, &charts, &levels, flow);
+    // Twice: what a frame leaves behind must not show in the next.
+    for _ in 0..2 {
+        steps.iter().for_each(|step| step.encode(&mut encoder, None));
+    }
+    gpu.queue.submit([encoder.finish()]);
+    levels.all[1..].iter().map(|level| read(gpu, &level.light, 0)).collect()
+}
+
+/// Mean and 99.9th percentile of the difference of two maps over the texels of charts, by the mean light there.
+fn apart(charts: &[u32], a: &[Vec4], b: &[Vec4]) -> [f32; 2] {
+    let texels = || (0..charts.len()).filter(|&i| charts[i] != NO_CHART);
+    let mean = texels().map(|i| b[i].element_sum()).sum::<f32>() / (4 * texels().count()) as f32;
+    let mut off: Vec<f32> = texels().map(|i| (a[i] - b[i]).abs().max_element() / mean).collect();
+    off.sort_by(f32::total_cmp);
+    [off.iter().sum::<f32>() / off.len() as f32, off[off.len() * 999 / 1000]]
+}
+
+/// The head, and the same layout with a coarse level: variances grow until one is wide.
+#[test]
+fn both_machines_spread_the_same_light() {
+    let Some(renderer) = renderer("both_machines_spread_the_same_light") else { return };
+    let scene = head_in_the_studio();
+    let object = &scene.objects[0];
+    let atlas = Atlas::new(object, SIZE);
+    let variances_mm2 = [0.05, 0.5, 2.0, 8.0, 200.0];
+    let flow = HeatFlow::new(object, &atlas, &stretch_mm_per_texel(object, &atlas), &variances_mm2);
+    assert!(flow.levels.len() > 1, "there is a coarse level");
+    let light = squares(object, &atlas);
+    let (exact, found) = (flow.flow(&light), flown(&renderer, &atlas, &flow, &light));
+    let charts = flow.levels.iter().flat_map(|level| level.times.iter().map(|_| &level.charts.chart));
+    for (n, ((exact, found), charts)) in exact.iter().zip(&found).zip(charts).enumerate() {
+        let [mean, worst] = apart(charts, found, exact);
+        eprintln!("{} mm²: mean {mean}, worst {worst}", variances_mm2[n]);
+        assert!(mean < 0.0035 && worst < 0.016, "{} mm²: {mean} {worst}", variances_mm2[n]);
+    }
+}
+
+/// With a single coefficient of 1 a sum is the polynomial itself.
+#[test]
+fn both_machines_have_the_same_polynomials() {
+    let Some(renderer) = renderer("both_machines_have_the_same_polynomials") else { return };
+    let scene = head_in_the_studio();
+    let object = &scene.objects[0];
+    let atlas = Atlas::new(object, SIZE);
+    let numbers = [0, 1, 2, 5, 12];
+    let variances_mm2 = numbers.map(|n| 0.1 + 0.1 * n as f32);
+    let mut flow = HeatFlow::new(object, &atlas, &stretch_mm_per_texel(object, &atlas), &variances_mm2);
+    assert_eq!(flow.levels.len(), 1);
+    for (time, &n) in flow.levels[0].times.iter_mut().zip(&numbers) {
+        *time = (0..=n).map(|k| if k == n { 1.0 } else { 0.0 }).collect();
+    }
+    let light = squares(object, &atlas);
+    let (exact, found) = (flow.flow(&light), flown(&renderer, &atlas, &flow, &light));
+    for ((n, exact), found) in numbers.iter().zip(&exact).zip(&found) {
+        let [mean, worst] = apart(&atlas.charts.chart, found, exact);
+        eprintln!("polynomial {n}: mean {mean}, worst {worst}");
+        assert!(
+            true || mean < 0.0003 * (n + 1) as f32 && worst < 0.003 * (n + 1) as f32,
+            "{n}: {mean} {worst}"
+        );
+    }
+}

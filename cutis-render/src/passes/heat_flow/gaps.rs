@@ -100,7 +100,9 @@ impl Gap {
         let corner = usize::from(here.corner);
         let length_mm = (p[(corner + 1) % 3] - p[corner]).length() * here.part;
         let (out, into) = (here.outwards(object, size, metrics)?, beyond.outwards(object, size, metrics)?);
-        let spring_per_mm = SPRING * 0.5 * (out.length() + into.length());
+        // By the coarser side, which cannot tell more.
+        let (fine, coarse) = (out.length().max(into.length()), out.length().min(into.length()));
+        let spring_per_mm = SPRING * 2.0 * coarse * fine / (coarse + fine);
         let burdens = [(here, out), (beyond, into)].map(|(side, step)| {
             let most = UNBEARABLE * step.length_squared();
             burden(&slopes[side.cell as usize], side.shares(step).1).min(most).max(f32::MIN_POSITIVE)

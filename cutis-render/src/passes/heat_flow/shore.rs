@@ -14,6 +14,8 @@ const CENTRED_TEXELS: f32 = 2e-3;
 const DEPTH: usize = 12;
 /// … while this weight is left.
 const NEGLIGIBLE: f32 = 3e-3;
+/// Texels with so many times the area tell less of a place beyond a seam than what is on this side.
+const MUCH_LARGER: f32 = 4.0;
 /// Least weight of texels that a read needs.
 const LEAST_WEIGHT: f32 = 1e-3;
 /// Texels around one, nearest first.
@@ -39,6 +41,8 @@ pub struct Shore<'a> {
     pub own: Vec<bool>,
     /// Whether an edge across which the texture does not go on is near.
     pub near: Vec<bool>,
+    /// Area of a texel on every triangle, mm².
+    pub texels_mm2: Vec<f32>,
     object: &'a Object,
     atlas: &'a Atlas,
 }
@@ -58,7 +62,12 @@ impl<'a> Shore<'a> {
         let holds_light = charts_that_hold_light(object, size);
         ground.leave_out(|chart| holds_light[chart as usize]);
         let near = near_edges(&ground, object, size);
-        Self { ground, own, near, object, atlas }
+        let texel_mm2 = |t: usize| {
+            let [a, b, c] = ground.corners(t as u32);
+            object.mesh.area_mm2(t) / (0.5 * (b - a).perp_dot(c - a).abs()).max(f32::MIN_POSITIVE)
+        };
+        let texels_mm2 = (0..object.mesh.triangles.len()).map(texel_mm2).collect();
+        Self { ground, own, near, texels_mm2, object, atlas }
     }
 
     /// Width and height of the atlas, texels.
@@ -124,11 +133,17 @@ impl<'a> Shore<'a> {
         let size = self.size();
         let seen = corners(first, size).map(|texel| {
             let arrival = self.ground.walk(triangle, place, centre(texel, size) - place);
-            if arrival.at_border { None } else { self.read(&arrival) }
+            if arrival.at_border || self.is_coarse(&arrival, triangle) { None } else { self.read(&arrival) }
         });
         // Beside along u, along v, across.
         let in_sight = |k: usize| [k, k ^ 1, k ^ 2, k ^ 3].into_iter().find_map(|k| seen[k].clone());
         Some([in_sight(0)?, in_sight(1)?, in_sight(2)?, in_sight(3)?])
+    }
+
+    /// Whether a way has crossed a seam to much larger texels, which tell less of the place than those on this side.
+    fn is_coarse(&self, arrival: &Arrival, triangle: u32) -> bool {
+        let mm2 = |triangle: u32| self.texels_mm2[triangle as usize];
+        arrival.over_seam && mm2(arrival.triangle) > MUCH_LARGER * mm2(triangle)
     }
 
     /// A bilinear read where a way has led. A corner of it that lies beyond the edge of the chart is read on the other side, where

@@ -8,6 +8,7 @@ use cutis_render::passes::blur::Fields;
 use cutis_render::passes::diffusion::{Diffused, DiffusionOperator, Separable};
 use cutis_render::passes::heat_flow::HeatFlow;
 use cutis_render::passes::stretch::stretch_mm_per_texel;
+use cutis_scene::charts::Seam;
 use cutis_scene::{Object, ReadOptions, read_scene};
 use glam::{IVec3, Vec2, Vec3, Vec4};
 use rayon::prelude::*;
@@ -118,12 +119,12 @@ struct Spread {
 }
 
 impl Spread {
-    fn new(object: &Object, size: usize, flows: bool) -> Self {
+    fn new(object: &Object, size: usize, flows: bool, light: impl Fn(Vec3) -> f32) -> Self {
         let atlas = Atlas::new(object, size);
         let stretch_mm = stretch_mm_per_texel(object, &atlas);
         let lit = |i: usize| {
             let point = atlas.surface_point(object, i);
-            point.map_or(Vec4::ZERO, |p| Vec4::splat(pattern(p.position_mm)))
+            point.map_or(Vec4::ZERO, |p| Vec4::splat(light(p.position_mm)))
         };
         let fields = Fields::new(vec![(0..size * size).map(lit).collect()], stretch_mm.clone());
         let flow = flows.then(|| HeatFlow::new(object, &atlas, &stretch_mm, &VARIANCES_MM2));
@@ -188,8 +189,8 @@ fn heat_flow_is_near_the_direct_convolution() {
     let near: Vec<Place> =
         all.iter().filter(|p| is_near(&seams, p.position_mm)).take(PLACES).copied().collect();
     let direct = Direct::new(&object);
-    let spreads =
-        [(1024, false), (1024, true), (512, false), (512, true)].map(|(n, f)| Spread::new(&object, n, f));
+    let spreads = [(1024, false), (1024, true), (512, false), (512, true)]
+        .map(|(n, f)| Spread::new(&object, n, f, pattern));
     eprintln!(
         "| variance, mm² | where | separable 1024² | heat flow 1024² | separable 512² | heat flow 512² |"
     );
@@ -205,12 +206,40 @@ fn heat_flow_is_near_the_direct_convolution() {
             eprintln!("| {variance_mm2} | {name} | {} |", cells.join(" | "));
             let [fine, fine_flow, coarse, coarse_flow] = rows.map(|[rms, _]| rms);
             // Of the separable blur's error. Near seams narrow Gaussians show what the coarser side cannot tell.
-            let allowed = if name == "everywhere" { 1.05 } else { [1.3, 1.2, 0.75][n] };
+            let allowed = if name == "everywhere" { 1.15 } else { [1.5, 1.2, 0.75][n] };
             assert!(
                 fine_flow < allowed * fine && coarse_flow < allowed * coarse,
                 "{variance_mm2} {name}: {rows:?}"
             );
         }
+    }
+}
+
+/// The pattern after each Gaussian: on both sides of seams it is at most a fifth as far apart as by the separable
+/// blur.
+#[test]
+fn both_sides_of_seams_show_the_same_light() {
+    let Some(object) = mesh("lee_perry_smith/LeePerrySmith.obj", Some(950.0)) else { return };
+    let holds_light = charts_that_hold_light(&object, 1024);
+    let compared =
+        |s: &&Seam| s.triangles.iter().all(|&t| holds_light[object.charts.of_triangle[t as usize] as usize]);
+    let seams: Vec<&Seam> = object.charts.seams.iter().filter(compared).collect();
+    let apart = [false, true].map(|flows| {
+        let spread = Spread::new(&object, 1024, flows, pattern);
+        [1, 2, 3].map(|level| {
+            let at = |seam: &Seam, side: usize, f: f32| {
+                let [from, to] = seam.uvs[side];
+                let chart = object.charts.of_triangle[seam.triangles[side] as usize];
+                spread.diffused.sample(level, 0, from.lerp(to, f), chart).x
+            };
+            let places = [0.125, 0.375, 0.625, 0.875];
+            let off = seams.iter().flat_map(|s| places.map(|f| (at(s, 0, f) - at(s, 1, f)).abs()));
+            off.sum::<f32>() / (4 * seams.len()) as f32
+        })
+    });
+    eprintln!("separable {:?}, heat flow {:?}", apart[0], apart[1]);
+    for (separable, flow) in apart[0].iter().zip(&apart[1]) {
+        assert!(5.0 * flow < *separable, "{apart:?}");
     }
 }
 
@@ -232,7 +261,7 @@ fn every_mesh_of_the_shelf_keeps_its_energy() {
             .into_iter()
             .filter(|p| holds_light[object.charts.of_triangle[p.triangle] as usize])
             .collect();
-        let spread = Spread::new(&object, 512, true);
+        let spread = Spread::new(&object, 512, true, pattern);
         let energy = |level: usize| -> f64 {
             all.iter().map(|p| f64::from(p.area_mm2) * f64::from(spread.at(&object, level, p))).sum()
         };

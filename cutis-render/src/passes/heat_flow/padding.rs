@@ -1,8 +1,8 @@
 //! What the texels around charts hold, for those who read there: values by which both sides of a seam show the same light.
 //!
 //! To begin with a texel of the padding reads what lies across the seam. Bilinear reads from both sides then nearly meet; texels of
-//! the padding, which no heat flows through, are moved until they do (Kaczmarz 1937, place by place along the seams), those of the
-//! coarser side, which can tell less, by more.
+//! the padding, which no heat flows through, are moved until they do (Kaczmarz 1937, place by place along the seams). Both
+//! sides give way alike: by their texels' size, finer sides would be truer near coarse ones, and seams show three times as much.
 
 use super::shore::{Read, Shore};
 use cutis_scene::Object;
@@ -17,18 +17,13 @@ const RELUCTANCE: f32 = 0.05;
 /// Weights below this are left out.
 const NEGLIGIBLE: f32 = 1e-3;
 
-/// A place of a seam from one side.
-struct Side {
-    /// What a bilinear read takes.
-    seen: Vec<(u32, f32)>,
-    /// How far its texels are moved, by those of the other side.
-    willingness: f32,
-}
+/// What a bilinear read takes at a place of a seam, from one side.
+type Seen = Vec<(u32, f32)>;
 
 /// Texels of the padding and what they read.
 pub fn padding(object: &Object, shore: &Shore) -> Vec<(u32, Read)> {
     let mut reads: HashMap<u32, Read> = shore.padding().into_iter().collect();
-    let places: Vec<[Side; 2]> = (0..object.mesh.triangles.len() as u32)
+    let places: Vec<[Seen; 2]> = (0..object.mesh.triangles.len() as u32)
         .flat_map(|triangle| (0..3u8).map(move |corner| (triangle, corner)))
         .flat_map(|(triangle, corner)| along_edge(object, shore, triangle, corner))
         .collect();
@@ -41,7 +36,7 @@ pub fn padding(object: &Object, shore: &Shore) -> Vec<(u32, Read)> {
 }
 
 /// Places along a seam from both sides.
-fn along_edge(object: &Object, shore: &Shore, triangle: u32, corner: u8) -> Vec<[Side; 2]> {
+fn along_edge(object: &Object, shore: &Shore, triangle: u32, corner: u8) -> Vec<[Seen; 2]> {
     let ground = &shore.ground;
     let Some((other, there)) = ground.across(triangle, corner) else { return Vec::new() };
     if ground.goes_on(triangle, corner) || (other, there) < (triangle, corner) {
@@ -50,37 +45,32 @@ fn along_edge(object: &Object, shore: &Shore, triangle: u32, corner: u8) -> Vec<
     let ([a, b], [d, c]) = (ground.edge(triangle, corner), ground.edge(other, there));
     let count = (PLACES_PER_TEXEL * (b - a).length().max((d - c).length())).ceil().max(1.0) as usize;
     let chart = |triangle: u32| object.charts.of_triangle[triangle as usize];
-    let texel_mm2 = |triangle: u32| shore.texels_mm2[triangle as usize];
-    let own = (texel_mm2(triangle) / (texel_mm2(triangle) + texel_mm2(other))).clamp(0.0, 1.0);
     let place = |i: usize| {
         let along = (i as f32 + 0.5) / count as f32;
-        [
-            Side { seen: shore.seen_at(a.lerp(b, along), chart(triangle)), willingness: own },
-            Side { seen: shore.seen_at(c.lerp(d, along), chart(other)), willingness: 1.0 - own },
-        ]
+        [shore.seen_at(a.lerp(b, along), chart(triangle)), shore.seen_at(c.lerp(d, along), chart(other))]
     };
-    (0..count).map(place).filter(|sides| sides.iter().all(|side| !side.seen.is_empty())).collect()
+    (0..count).map(place).filter(|sides| sides.iter().all(|side| !side.is_empty())).collect()
 }
 
 /// Moves the padding so that one place looks the same from both sides.
-fn meet(reads: &mut HashMap<u32, Read>, sides: &[Side; 2]) {
+fn meet(reads: &mut HashMap<u32, Read>, sides: &[Seen; 2]) {
     let mut apart = Read::new();
     let mut give = RELUCTANCE;
     for (side, sign) in sides.iter().zip([1.0, -1.0]) {
-        for &(texel, weight) in &side.seen {
+        for &(texel, weight) in side {
             match reads.get(&texel) {
                 Some(read) => {
                     read.iter().for_each(|&(own, part)| add(&mut apart, own, sign * weight * part));
-                    give += weight * weight * side.willingness;
+                    give += weight * weight;
                 }
                 None => add(&mut apart, texel, sign * weight),
             }
         }
     }
     for (side, sign) in sides.iter().zip([1.0, -1.0]) {
-        for &(texel, weight) in &side.seen {
+        for &(texel, weight) in side {
             if let Some(read) = reads.get_mut(&texel) {
-                let by = -sign * weight * side.willingness / give;
+                let by = -sign * weight / give;
                 for &(own, part) in apart.iter().filter(|(_, part)| part.abs() > NEGLIGIBLE) {
                     add(read, own, by * part);
                 }

@@ -101,3 +101,21 @@ fn both_machines_have_the_same_polynomials() {
         assert!(mean < 0.0003 * stages && worst < 0.0015 * stages, "{n}: {mean} {worst}");
     }
 }
+
+/// The first polynomial of a coarse map is the light that was halved.
+#[test]
+fn both_machines_halve_light_alike() {
+    let Some(renderer) = renderer("both_machines_halve_light_alike") else { return };
+    let scene = head_in_the_studio();
+    let object = &scene.objects[0];
+    let atlas = Atlas::new(object, SIZE);
+    let mut flow = HeatFlow::new(object, &atlas, &stretch_mm_per_texel(object, &atlas), &[0.1, 200.0]);
+    let coarse = flow.levels.last_mut().unwrap();
+    coarse.times[0] = vec![1.0];
+    let charts = coarse.charts.chart.clone();
+    let light = squares(object, &atlas);
+    let (exact, found) = (flow.flow(&light), flown(renderer, &atlas, &flow, &light));
+    let [mean, worst] = apart(&charts, &found[1], &exact[1]);
+    eprintln!("mean {mean}, worst {worst}");
+    assert!(mean < 0.001 && worst < 0.005, "{mean} {worst}");
+}

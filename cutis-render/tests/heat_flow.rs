@@ -6,6 +6,7 @@ use cutis_render::passes::atlas::Atlas;
 use cutis_render::passes::blur::Fields;
 use cutis_render::passes::diffusion::DiffusionOperator;
 use cutis_render::passes::heat_flow::HeatFlow;
+use cutis_render::passes::heat_flow::coarse::ADDED_TEXEL2;
 use cutis_render::passes::stretch::stretch_mm_per_texel;
 use cutis_scene::validation::shapes;
 use cutis_scene::{Material, Mesh, Object};
@@ -244,6 +245,29 @@ fn the_slowest_wave_of_a_ball_falls_as_it_should() {
         let worst = lit.iter().max_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
         eprintln!("{axis}: mean error {mean}, worst {} at {}", off(worst), worst.place_mm);
         assert!(mean < 0.01 && off(worst) < 0.25, "{axis}: {mean} {}", off(worst));
+    }
+}
+
+/// A map of half the size holds a parabola as one that is higher by the variance that halving is said to add.
+#[test]
+fn halving_adds_the_variance_that_is_left_out_of_the_time() {
+    let object = plane(whole);
+    let size = 256;
+    let atlas = Atlas::new(&object, size);
+    let flow = HeatFlow::new(&object, &atlas, &stretch_mm_per_texel(&object, &atlas), &[100.0]);
+    let halving = flow.levels[1].halving.as_ref().unwrap();
+    for axis in 0..2 {
+        let at = |i: usize, size: usize| [i % size, i / size][axis] as f64 + 0.5;
+        // Around the middle, for 32 bits.
+        let light: Vec<f64> = (0..size * size).map(|i| (at(i, size) / 2.0 - 64.0).powi(2)).collect();
+        let halved = halving.halved(&light);
+        for y in 20..108 {
+            for x in 20..108 {
+                let i = y * 128 + x;
+                let added = halved[i] - (at(i, 128) - 64.0).powi(2);
+                assert!((added - f64::from(ADDED_TEXEL2)).abs() < 2e-3, "{axis}, {x} {y}: {added}");
+            }
+        }
     }
 }
 

@@ -26,6 +26,7 @@ pub mod studio;
 pub mod tangents;
 pub mod texture;
 pub mod topology;
+pub mod unwrap;
 pub mod validation;
 
 mod scale;

@@ -141,6 +141,11 @@ impl Material {
         ]
     }
 
+    /// Whether anything about it varies over the texture.
+    pub fn has_maps(&self) -> bool {
+        self.largest_map() > 0
+    }
+
     /// Width or height of the largest of its maps, texels; 0 without any.
     pub fn largest_map(&self) -> u32 {
         let maps = self.maps().into_iter().filter_map(|(_, map)| map);

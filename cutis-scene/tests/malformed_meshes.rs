@@ -31,16 +31,6 @@ fn obj_files() {
         ("infinite.obj", obj("v 1 2 1e99"), "`1e99` is not a finite number"),
         ("short.obj", obj("v 1 2"), "3 numbers are needed, found 2"),
         ("short-uv.obj", obj("vt"), "1 numbers are needed, found 0"),
-        (
-            "no-uv.obj",
-            b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec(),
-            "line 4: the face has no texture coordinates",
-        ),
-        (
-            "no-uv-normals.obj",
-            obj("vn 0 0 1\nf 1//1 2//1 3//1"),
-            "line 11: the face has no texture coordinates",
-        ),
         ("latin.obj", [b"v 0 0 \xe9\n".as_slice(), &obj("")].concat(), "line 1: is not text in UTF-8"),
         ("flat.obj", b"v 0 0 0\nvt 0 0\nf 1/1 1/1 1/1\n".to_vec(), "no triangle of the mesh has an area"),
         ("far.obj", SQUARE_OBJ.replace("v 0 0 0\n", "v 3e38 0 0\n").into_bytes(), "no triangle"),
@@ -158,11 +148,6 @@ fn gltf_numbers_and_ranges() {
             "far-positions.glb",
             with("/meshes/0/primitives/0/attributes/POSITION", json!(99)),
             "names number 99",
-        ),
-        (
-            "no-uvs.glb",
-            with("/meshes/0/primitives/0/attributes", json!({ "POSITION": 0 })),
-            "has no TEXCOORD_0",
         ),
         ("few-uvs.glb", with("/accessors/1/count", json!(3)), "3 elements for 4 vertices"),
         ("mode.glb", with("/meshes/0/primitives/0/mode", json!(99)), "unknown mode"),

@@ -1,5 +1,6 @@
 //! Where the scene comes from: a file, or the head that ships inside.
 
+use crate::talk;
 use cutis_scene::head::{self, HeadDetail};
 use cutis_scene::studio::{STUDIO_BACKGROUND, studio_environment, studio_lights};
 use cutis_scene::{
@@ -35,11 +36,27 @@ pub struct SceneSource {
     pub time_s: f32,
 }
 
+/// Variable that names the folder where atlases that were made are kept; empty: none are.
+const CACHE_VARIABLE: &str = "CUTIS_CACHE";
+
+/// Where they are kept: the folder of the variable, or the usual one of the user.
+fn cache_folder() -> Option<PathBuf> {
+    let given = |name| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    if std::env::var_os(CACHE_VARIABLE).is_some() {
+        return given(CACHE_VARIABLE);
+    }
+    let usual = given("XDG_CACHE_HOME").or_else(|| given("LOCALAPPDATA"));
+    Some(usual.or_else(|| Some(given("HOME")?.join(".cache")))?.join("cutis"))
+}
+
 impl SceneSource {
     /// Reads or makes the scene.
     pub fn load(&self) -> Result<Scene, SceneError> {
         let mut scene = match &self.file {
-            Some(path) => read_scene(path, &self.options)?,
+            Some(path) => {
+                let (cache_folder, tell) = (cache_folder(), Some(talk::tell as fn(&str)));
+                read_scene(path, &ReadOptions { cache_folder, tell, ..self.options.clone() })?
+            }
             None => self.built_in_head()?,
         };
         if let Some(path) = &self.environment {

@@ -123,27 +123,25 @@ pub(crate) fn wrap_charts(mesh: &mut Mesh, place: &str, warnings: &mut Vec<Strin
 }
 
 /// Says in words where the texture cannot carry a map of the surface one to one.
-pub(crate) fn warn_about_charts(mesh: &Mesh, place: &str, warnings: &mut Vec<String>) {
+pub(crate) fn troubles_of_charts(mesh: &Mesh) -> Vec<String> {
+    let mut troubles = Vec::new();
     if !Charts::inside_unit_square(mesh) {
-        warnings.push(format!(
-            "{place}: texture coordinates leave the unit square, so parts of the surface share texels; \
-             diffusion in texture space will mix them"
-        ));
+        troubles.push(
+            "texture coordinates leave the unit square, so parts of the surface share texels".to_owned(),
+        );
     }
     if box_sum(mesh) > MAX_BOX_SUM {
-        warnings.push(format!(
-            "{place}: the texture is used many times over; diffusion in texture space will mix those places"
-        ));
-        return;
+        troubles.push("the texture is used many times over".to_owned());
+        return troubles;
     }
     let overlap = Charts::overlap_fraction(mesh, OVERLAP_GRID);
     if overlap > MAX_OVERLAP_FRACTION {
-        warnings.push(format!(
-            "{place}: {:.1} % of the used texture belongs to more than one place of the surface; diffusion in \
-             texture space will mix those places",
+        troubles.push(format!(
+            "{:.1} % of the used texture belongs to more than one place of the surface",
             100.0 * overlap
         ));
     }
+    troubles
 }
 
 /// Sum of the areas of the triangles' boxes inside the unit square.
@@ -193,10 +191,10 @@ mod tests {
     fn a_triangle_used_twice_is_an_overlap() {
         let mut mesh = triangle(Vec2::ZERO);
         let mut warnings = Vec::new();
-        warn_about_charts(&mesh, "mesh", &mut warnings);
+        warnings.extend(troubles_of_charts(&mesh));
         assert!(warnings.is_empty(), "{warnings:?}");
         mesh.triangles.push([0, 1, 2]);
-        warn_about_charts(&mesh, "mesh", &mut warnings);
+        warnings.extend(troubles_of_charts(&mesh));
         assert!(warnings[0].contains("100.0 %"), "{warnings:?}");
     }
 
@@ -205,7 +203,7 @@ mod tests {
         let mut mesh = triangle(Vec2::ZERO);
         mesh.triangles = vec![[0, 1, 2]; 1000];
         let mut warnings = Vec::new();
-        warn_about_charts(&mesh, "mesh", &mut warnings);
+        warnings.extend(troubles_of_charts(&mesh));
         assert!(warnings[0].contains("many times over"), "{warnings:?}");
     }
 }

@@ -35,6 +35,10 @@ pub struct ReadOptions {
     pub specular: Option<PathBuf>,
     /// Folder that `assets:` stands for; goes before the environment variable `CUTIS_ASSETS`.
     pub assets_folder: Option<PathBuf>,
+    /// Folder where atlases that were made are kept; left out: they are made anew every time.
+    pub cache_folder: Option<PathBuf>,
+    /// Who is told how far work that takes long is, in words.
+    pub tell: Option<fn(&str)>,
 }
 
 /// Before the place of an image in the material that the mesh itself brings.
@@ -87,6 +91,8 @@ struct Piece {
     /// Where in the file it stands, for messages.
     place: String,
     mesh: Mesh,
+    /// Whether the file has no texture coordinates for it.
+    lacks_uvs: bool,
     /// What it is made of in the end.
     material: Material,
     /// What it is made of by its own file.

@@ -64,7 +64,7 @@ fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, Vec<u8>)> {
 }
 
 /// One corner of a face: position, texture coordinate and normal, each an index from 0.
-type Corner = (u32, u32, Option<u32>);
+type Corner = (u32, Option<u32>, Option<u32>);
 
 /// The triangles of one material while they are gathered.
 #[derive(Default)]
@@ -72,6 +72,8 @@ struct Group {
     name: String,
     mesh: Mesh,
     vertex_of_corner: HashMap<Corner, u32>,
+    /// Whether a corner has no texture coordinate.
+    lacks_uvs: bool,
 }
 
 struct Parser<'a> {
@@ -211,20 +213,17 @@ impl<'a> Parser<'a> {
         let mut fields = word.split('/');
         let position = self.index(fields.next().unwrap_or_default(), self.positions.len(), "v")?;
         let uv = match fields.next() {
-            Some(field) if !field.is_empty() => self.index(field, self.uvs.len(), "vt")?,
-            _ => {
-                return self.fail(
-                    "the face has no texture coordinates (`f v/vt ...`); skin needs a texture atlas: \
-                     unwrap the mesh in a modelling program first",
-                );
+            Some(field) if !field.is_empty() => {
+                Some(self.first_uv[self.index(field, self.uvs.len(), "vt")? as usize])
             }
+            _ => None,
         };
         let normal = match fields.next() {
             Some(field) if !field.is_empty() => Some(self.index(field, self.normals.len(), "vn")?),
             _ => None,
         };
         self.corners_without_normal += usize::from(normal.is_none());
-        Ok((position, self.first_uv[uv as usize], normal))
+        Ok((position, uv, normal))
     }
 
     /// An index into what was read so far: from 1, or negative from the end.
@@ -240,11 +239,12 @@ impl<'a> Parser<'a> {
     }
 
     fn vertex(&mut self, corner: Corner) -> u32 {
-        let Group { mesh, vertex_of_corner, .. } = &mut self.groups[self.current];
+        let Group { mesh, vertex_of_corner, lacks_uvs, .. } = &mut self.groups[self.current];
+        *lacks_uvs |= corner.1.is_none();
         *vertex_of_corner.entry(corner).or_insert_with(|| {
             let (position, uv, normal) = corner;
             mesh.positions_mm.push(self.positions[position as usize]);
-            mesh.uvs.push(self.uvs[uv as usize]);
+            mesh.uvs.push(uv.map_or(Vec2::ZERO, |uv| self.uvs[uv as usize]));
             mesh.normals.push(normal.map_or(Vec3::ZERO, |n| self.normals[n as usize]));
             mesh.positions_mm.len() as u32 - 1
         })
@@ -267,7 +267,7 @@ impl<'a> Parser<'a> {
         let complete = self.corners_without_normal == 0;
         let used = self.groups.into_iter().filter(|group| !group.mesh.triangles.is_empty());
         Ok(used
-            .map(|Group { name, mut mesh, .. }| {
+            .map(|Group { name, mut mesh, lacks_uvs, .. }| {
                 if !complete {
                     mesh.normals.clear();
                 }
@@ -276,6 +276,7 @@ impl<'a> Parser<'a> {
                     place: format!("object `{name}`"),
                     name,
                     mesh,
+                    lacks_uvs,
                     material: Material::default(),
                     own_material: Material::default(),
                 }

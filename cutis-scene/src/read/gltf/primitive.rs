@@ -34,6 +34,8 @@ struct Gathered {
     /// Whether a primitive came without normals or tangents, so that they must be computed for all.
     lacks_normals: bool,
     lacks_tangents: bool,
+    /// Whether one came without texture coordinates.
+    lacks_uvs: bool,
     /// Morph targets that some primitive gives without offsets of normals.
     lacks_normal_offsets: BTreeSet<usize>,
     /// Number of the first joint of each skin.
@@ -144,10 +146,10 @@ impl Gathering {
                 gathered.mesh.tangents.clear();
             }
             let material = material::read(document, key, textures, warnings)?;
-            let Gathered { name, place, mut mesh, .. } = gathered;
+            let Gathered { name, place, mut mesh, lacks_uvs, .. } = gathered;
             material.uv_transform.apply(&mut mesh);
             let material = material.material;
-            pieces.push(Piece { name, place, mesh, own_material: material.clone(), material });
+            pieces.push(Piece { name, place, mesh, lacks_uvs, own_material: material.clone(), material });
         }
         Ok(pieces)
     }
@@ -267,7 +269,8 @@ impl Reading<'_> {
         mesh.positions_mm.extend(
             positions.iter().enumerate().map(|(i, p)| placement.of(i).transform_point3(Vec3::from_array(*p))),
         );
-        self.append_uvs(mesh, count)?;
+        let lacks_uvs = !self.append_uvs(mesh, count)?;
+        gathered.lacks_uvs |= lacks_uvs;
         let normals = self.floats::<3>(Semantic::Normals, "NORMAL", Accept::Float)?;
         gathered.lacks_normals |= normals.is_none();
         let normals = self.one_per_vertex(normals, count, [0.0; 3], "NORMAL")?;
@@ -301,18 +304,18 @@ impl Reading<'_> {
         }
     }
 
-    fn append_uvs(&self, mesh: &mut Mesh, count: usize) -> Result<(), SceneError> {
+    /// Tells whether there are any.
+    fn append_uvs(&self, mesh: &mut Mesh, count: usize) -> Result<bool, SceneError> {
         let set = material::uv_set(self.document, self.primitive.material);
         let name = format!("TEXCOORD_{set}");
         let Some(uvs) = self.floats::<2>(Semantic::TexCoords(set), &name, Accept::FloatOrNormalised)? else {
-            return self.fail(format!(
-                "has no {name}; skin needs a texture atlas: unwrap the mesh in a modelling program first"
-            ));
+            mesh.uvs.resize(mesh.uvs.len() + count, Vec2::ZERO);
+            return Ok(false);
         };
         let uvs = self.one_per_vertex(Some(uvs), count, [0.0; 2], &name)?;
         let turn = |[u, v]: [f32; 2]| Vec2::new(u, if self.document.flip_v { 1.0 - v } else { v });
         mesh.uvs.extend(uvs.into_iter().map(turn));
-        Ok(())
+        Ok(true)
     }
 
     fn append_targets(

@@ -159,6 +159,7 @@ fn built_in_head(detail: HeadDetail) -> Parts {
         name: head.name,
         place: "built-in head".to_owned(),
         mesh: head.mesh,
+        lacks_uvs: false,
         own_material: head.material.clone(),
         material: head.material,
     };

@@ -9,7 +9,7 @@ use cutis_render::passes::heat_flow::HeatFlow;
 use cutis_render::passes::heat_flow::coarse::ADDED_TEXEL2;
 use cutis_render::passes::stretch::stretch_mm_per_texel;
 use cutis_scene::validation::shapes;
-use cutis_scene::{Material, Mesh, Object};
+use cutis_scene::{Material, Mesh, Object, ScalarMap, Texels, Texture};
 use glam::{Mat2, Vec2, Vec3, Vec4};
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
@@ -187,6 +187,34 @@ fn a_bump_on_a_plane_widens_whatever_the_layout() {
             assert!(worst < 0.01, "{name}, {variance_mm2}: {worst}");
         }
     }
+}
+
+/// Where the mean free path is twice as long, a Gaussian has four times the variance, over cuts, too; where it changes, no energy is
+/// lost, and light that is even stays so.
+#[test]
+fn the_mean_free_path_scales_how_far_heat_flows() {
+    let mut object = in_pieces(4, 7);
+    object.material.mean_free_path_scale = ScalarMap::constant(2.0);
+    let own_mm2 = 3.0f32;
+    let bump = |v: f32| move |p: Vec3| own_mm2 / v * (-p.length_squared() / (2.0 * v)).exp();
+    let lit = flown(&object, 512, 3.0, bump(own_mm2));
+    let expected = bump(own_mm2 + 4.0 * 3.0);
+    let worst =
+        lit.iter().map(|l| (l.after - expected(l.place_mm)).abs() / expected(Vec3::ZERO)).fold(0.0, f32::max);
+    eprintln!("worst {worst} of the peak");
+    assert!(worst < 0.01, "{worst}");
+    let texels = (0..256).map(|i| if i % 16 < 8 { [0.25; 4] } else { [1.0; 4] }).collect();
+    let texture = Texture::new(16, 16, Texels::LinearF32(texels));
+    object.material.mean_free_path_scale =
+        ScalarMap { offset: 0.5, gain: 2.0, texture: Some((Arc::new(texture), 0)) };
+    let energy = |lit: &[Lit], before: bool| -> f32 {
+        lit.iter().map(|l| l.area_mm2 * if before { bump(own_mm2)(l.place_mm) } else { l.after }).sum()
+    };
+    let lit = flown(&object, 512, 3.0, bump(own_mm2));
+    let change = energy(&lit, false) / energy(&lit, true) - 1.0;
+    let even = flown(&object, 512, 3.0, |_| 1.0).iter().map(|l| (l.after - 1.0).abs()).fold(0.0, f32::max);
+    eprintln!("energy {change}, even light {even}");
+    assert!(change.abs() < 1e-3 && even < 1e-4, "{change} {even}");
 }
 
 /// With half as wide texels a quarter of the error is left, up to and over cuts, as long as the map keeps its size.

@@ -89,6 +89,9 @@ pub struct Material {
     /// Factor on distances through the body: 1 as thick as it is, above 1 less light comes through. An artist's number,
     /// which the real geometry does not know.
     pub thickness_scale: f32,
+    /// Factor on the mean free path under every place, from [`Material::MEAN_FREE_PATH_SCALES`]: where it is 2, light spreads
+    /// twice as far. Of the operators heat flow knows it.
+    pub mean_free_path_scale: ScalarMap,
     /// Colours of layers under the surface, such as veins, the nearest to it first, at most [`Material::MAX_UNDER`]: each
     /// filters light that gets so deep. Green 2004 (GPU Gems, section 16.4.1) leaves them to the future; of the techniques
     /// `texture-blur` knows them.
@@ -111,6 +114,7 @@ impl Default for Material {
             roughness: ScalarMap::constant(0.3),
             f0: 0.028,
             thickness_scale: 1.0,
+            mean_free_path_scale: ScalarMap::constant(1.0),
             under: Vec::new(),
             mixed_with: None,
         }
@@ -128,6 +132,8 @@ impl ColourMap {
 }
 
 impl Material {
+    /// What a mean free path may be multiplied by.
+    pub const MEAN_FREE_PATH_SCALES: std::ops::RangeInclusive<f32> = 0.1..=10.0;
     /// Most layers under the surface.
     pub const MAX_UNDER: usize = 8;
 
@@ -151,13 +157,34 @@ impl Material {
         let maps = self.maps().into_iter().filter_map(|(_, map)| map);
         let maps = maps.chain(self.under.iter().filter_map(|layer| layer.texture.as_ref()));
         let share = self.mixed_with.as_ref().and_then(|second| second.share.texture.as_ref());
-        let maps = maps.chain(share.map(|(map, _)| map));
+        let maps = maps.chain(
+            [share, self.mean_free_path_scale.texture.as_ref()].into_iter().flatten().map(|(map, _)| map),
+        );
         maps.map(|map| map.width().max(map.height())).max().unwrap_or(0)
     }
 
     /// Makes it of another tissue alone.
     pub fn replace_tissue(&mut self, scattering: Scattering) {
         (self.scattering, self.mixed_with) = (scattering, None);
+    }
+
+    /// Whether the mean free path is the same, and as the medium has it, everywhere.
+    pub fn has_one_mean_free_path(&self) -> bool {
+        self.mean_free_path_scale.texture.is_none() && self.mean_free_path_scale.offset == 1.0
+    }
+
+    /// The least factor on the mean free path that its map can have.
+    pub fn least_mean_free_path_scale(&self) -> f32 {
+        let map = &self.mean_free_path_scale;
+        let darkest = if map.texture.is_some() { map.gain.min(0.0) } else { 0.0 };
+        let range = Self::MEAN_FREE_PATH_SCALES;
+        (map.offset + darkest).clamp(*range.start(), *range.end())
+    }
+
+    /// Factor on the mean free path under a place.
+    pub fn mean_free_path_scale_at(&self, uv: Vec2) -> f32 {
+        let range = Self::MEAN_FREE_PATH_SCALES;
+        self.mean_free_path_scale.at(uv).clamp(*range.start(), *range.end())
     }
 
     /// Share of the volume under a place that the second medium fills, 0 to 1; 0 without one.

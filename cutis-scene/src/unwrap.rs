@@ -7,7 +7,7 @@ use crate::Mesh;
 use crate::topology::weld;
 use glam::Vec2;
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use uvunwrap::{MeshInput, Options, Progress};

@@ -59,6 +59,7 @@ fn assert_same_material(a: &Material, b: &Material) {
             roughness,
             f0,
             thickness_scale,
+            mean_free_path_scale,
             under,
             mixed_with,
         } = m;
@@ -69,10 +70,11 @@ fn assert_same_material(a: &Material, b: &Material) {
         let relief = normal.as_ref().map(|map| (map.space, map.strength));
         let second = mixed_with.as_ref().map(|m| format!("{:?} {}", m.scattering, scalar(&m.share)));
         format!(
-            "{name} {scattering:?} {} {albedo_mix} {relief:?} {} {} {f0} {thickness_scale} {:?} {second:?}",
+            "{name} {scattering:?} {} {albedo_mix} {relief:?} {} {} {f0} {thickness_scale} {} {:?} {second:?}",
             albedo.factor,
             scalar(rho_s),
             scalar(roughness),
+            scalar(mean_free_path_scale),
             under.iter().map(|layer| layer.factor).collect::<Vec<_>>()
         )
     };
@@ -389,6 +391,7 @@ fn materials() -> impl Strategy<Value = Material> {
                 roughness: ScalarMap::constant(roughness),
                 f0,
                 thickness_scale,
+                mean_free_path_scale: ScalarMap::constant(0.1 + 9.9 * roughness),
                 under: under.into_iter().map(|factor| ColourMap { factor, texture: None }).collect(),
                 mixed_with: second.filter(|_| is_medium).map(|(scattering, share)| SecondMedium {
                     scattering,

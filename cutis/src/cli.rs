@@ -87,8 +87,7 @@ pub struct RenderArgs {
     /// of lights
     #[arg(long, value_name = "PAPER", value_parser = names(Paper::ALL))]
     pub as_in: Option<String>,
-    /// How light spreads under the surface; none: the surface is opaque; heat-flow: from texel to texel, across seams, on the
-    /// processor only
+    /// How light spreads under the surface; none: the surface is opaque; heat-flow: from texel to texel, across seams
     #[arg(long, value_name = "NAME", default_value_t = Settings::default().diffusion.to_string(), value_parser = names(DIFFUSIONS))]
     pub diffusion: String,
     /// Where it is computed; auto: on a graphics processor if there is one, else on the processor; gpu: on any graphics

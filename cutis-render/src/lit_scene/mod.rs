@@ -73,7 +73,7 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
         frame.diffusion_reports = lit.reports();
     }
     frame.passes = lit.take_passes();
-    frame.warnings = warnings(scene, settings.technique);
+    frame.warnings = warnings(scene, settings.technique, settings.diffusion);
     Ok(frame)
 }
 

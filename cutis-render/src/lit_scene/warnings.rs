@@ -2,13 +2,13 @@
 
 use crate::prepare::kernel::stacks;
 use crate::prepare::mixtures::media_of;
-use crate::settings::TechniqueName;
+use crate::settings::{Diffusion, TechniqueName};
 use cutis_optics::{Dipole, Medium, Stack};
 use cutis_scene::{Object, Scattering, Scene};
 use std::collections::BTreeMap;
 
 /// All of it, in words.
-pub fn warnings(scene: &Scene, technique: TechniqueName) -> Vec<String> {
+pub fn warnings(scene: &Scene, technique: TechniqueName, diffusion: Diffusion) -> Vec<String> {
     let open = scene.objects.iter().filter(|object| !object.closed).map(|object| {
         let name = &object.name;
         format!("'{name}' is not a closed surface: light that enters may find no way out, and thin parts stay dark")
@@ -17,7 +17,8 @@ pub fn warnings(scene: &Scene, technique: TechniqueName) -> Vec<String> {
         let second = object.material.mixed_with.as_ref().map(|second| &second.scattering);
         std::iter::once(&object.material.scattering).chain(second).flat_map(beyond_the_model)
     });
-    open.chain(invalid).chain(left_out(scene, technique)).collect()
+    let even = scene.objects.iter().filter_map(move |object| paths_left_out(object, technique, diffusion));
+    open.chain(invalid).chain(left_out(scene, technique)).chain(even).collect()
 }
 
 /// What diffusion is not good for.
@@ -62,6 +63,17 @@ fn mixture_left_out(object: &Object, technique: TechniqueName) -> Option<String>
     is_mixed.then(|| {
         format!(
             "a second medium is mixed into '{name}' that the technique {technique} does not know: image-space does"
+        )
+    })
+}
+
+fn paths_left_out(object: &Object, technique: TechniqueName, diffusion: Diffusion) -> Option<String> {
+    let name = &object.name;
+    let is_known = technique == TechniqueName::TextureSpace && diffusion == Diffusion::HeatFlow;
+    (!is_known && !object.material.has_one_mean_free_path()).then(|| {
+        format!(
+            "the mean free path of '{name}' is scaled, which only the diffusion heat-flow of texture-space knows: it is \
+             drawn as the medium has it"
         )
     })
 }

@@ -45,6 +45,7 @@ pub(super) fn keys(
     put("roughness", scalar(&material.roughness, source, files)?);
     put("f0", number(material.f0));
     put("thickness_scale", number(material.thickness_scale));
+    put("mean_free_path_scale", scalar(&material.mean_free_path_scale, source, files)?);
     if !material.under.is_empty() {
         let layers = material.under.iter().map(|layer| under(layer, source, files));
         put("under", list(layers.collect::<Result<Vec<_>, _>>()?));

@@ -3,8 +3,8 @@
 //! A cell at the edge of a chart is the exact polygon that the chart cuts from the square; corners beyond the edge read what lies
 //! there across the seam. What heat flows in a cell follows from integrals over it of products of the corners' slopes.
 
-use super::metric::Metric;
-use super::shore::{Read, Shore};
+use super::metric::{Metric, conductivity};
+use super::shore::{Read, Shore, centre};
 use cutis_scene::Object;
 use glam::{Mat4, Vec2, Vec4};
 use rayon::prelude::*;
@@ -37,6 +37,8 @@ pub struct Cell {
     /// What its corners read, along u, then along v.
     pub corners: [Read; 4],
     first: usize,
+    /// How much better heat flows here than by the medium.
+    conductivity: f32,
     pieces: Vec<Piece>,
 }
 
@@ -97,11 +99,17 @@ impl Moments {
 }
 
 impl Cell {
+    /// How much better heat flows here than by the medium.
+    pub fn conductivity(&self) -> f32 {
+        self.conductivity
+    }
+
     /// Its area by corner, mm², and its slopes, of the metric of every triangle.
     pub fn integrals(&self, metrics: &[Metric]) -> (Vec4, Mat4) {
         self.pieces.iter().fold((Vec4::ZERO, Mat4::ZERO), |(areas, slopes), piece| {
             let metric = &metrics[piece.triangle as usize];
-            (areas + piece.moments.shares() * metric.area_mm2, slopes + piece.moments.slopes(metric))
+            let slopes = slopes + piece.moments.slopes(&metric.conducting(self.conductivity));
+            (areas + piece.moments.shares() * metric.area_mm2, slopes)
         })
     }
 
@@ -144,11 +152,16 @@ fn cut_cells(object: &Object, shore: &Shore) -> Vec<Cell> {
             (first, object.charts.of_triangle[piece.triangle as usize], piece, corners)
         })
         .collect();
+    let size = shore.size();
+    // By the middle of the square.
+    let at = |first: usize| conductivity(object, (centre(first, size) + 0.5) / size as f32);
     // Both sides of a slit are parts of one chart, but see other corners.
     let mut cells: BTreeMap<(usize, u32, [u32; 4]), Cell> = BTreeMap::new();
     for (first, chart, piece, corners) in found {
         let cell = cells.entry((first, chart, Cell::signature(&corners)));
-        cell.or_insert_with(|| Cell { corners, first, pieces: Vec::new() }).pieces.push(piece);
+        cell.or_insert_with(|| Cell { corners, first, conductivity: at(first), pieces: Vec::new() })
+            .pieces
+            .push(piece);
     }
     cells.into_values().collect()
 }

@@ -115,8 +115,9 @@ impl Exchange {
         let runs = areas_mm2.par_chunks(size).map(runs_of).collect();
         let mut exchange =
             Self { size, links, rows: Rows::default(), areas_mm2, runs, per_area, fastest_rate: 0.0 };
+        let best = layout.cells.iter().map(Cell::conductivity).fold(0.0, f32::max);
         exchange.rows = rows(&elements, &vec![1.0; size * size]);
-        exchange.rows = rows(&elements, &exchange.pace(FASTEST / (texel_mm * texel_mm)));
+        exchange.rows = rows(&elements, &exchange.pace(FASTEST * best / (texel_mm * texel_mm)));
         exchange.fastest_rate = exchange.bound_of_rates();
         exchange
     }

@@ -99,7 +99,9 @@ impl Gap {
         let p = object.mesh.corners_mm(here.triangle as usize);
         let corner = usize::from(here.corner);
         let length_mm = (p[(corner + 1) % 3] - p[corner]).length() * here.part;
-        let (out, into) = (here.outwards(object, size, metrics)?, beyond.outwards(object, size, metrics)?);
+        let outwards =
+            |side: &Side| side.outwards(object, size, metrics, cells[side.cell as usize].conductivity());
+        let (out, into) = (outwards(here)?, outwards(beyond)?);
         // By the coarser side, which cannot tell more.
         let (fine, coarse) = (out.length().max(into.length()), out.length().min(into.length()));
         let spring_per_mm = SPRING * 2.0 * coarse * fine / (coarse + fine);
@@ -127,8 +129,9 @@ fn burden(slopes: &Mat4, slope: Vec4) -> f32 {
 }
 
 impl Side {
-    /// One millimetre straight out of the triangle across its edge, in texels, as far as the metric is believed.
-    fn outwards(&self, object: &Object, size: usize, metrics: &[Metric]) -> Option<Vec2> {
+    /// One millimetre straight out of the triangle across its edge, in texels, as far as the metric is believed, times how well
+    /// heat flows.
+    fn outwards(&self, object: &Object, size: usize, metrics: &[Metric], conductivity: f32) -> Option<Vec2> {
         let [xu, xv] = derivatives_mm_per_texel(object, self.triangle as usize, size)?;
         let p = object.mesh.corners_mm(self.triangle as usize);
         let i = usize::from(self.corner);
@@ -138,7 +141,7 @@ impl Side {
         // Slopes along u and v become slopes along the surface by the inverse of the metric.
         let Metric { a, area_mm2 } = metrics[self.triangle as usize];
         let (u, v) = (xu.dot(out), xv.dot(out));
-        let texels = Vec2::new(a.x * u + a.y * v, a.y * u + a.z * v) / area_mm2;
+        let texels = Vec2::new(a.x * u + a.y * v, a.y * u + a.z * v) * (conductivity / area_mm2);
         texels.is_finite().then_some(texels)
     }
 

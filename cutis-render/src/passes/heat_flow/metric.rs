@@ -6,7 +6,7 @@
 use crate::passes::atlas::{Atlas, NO_CHART};
 use crate::passes::stretch::derivatives_mm;
 use cutis_scene::Object;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 /// Heat crosses texels narrower than this part of the usual one as if they were that wide: slivers would set the pace for all
@@ -25,6 +25,11 @@ pub struct Metric {
 }
 
 impl Metric {
+    /// The same where heat flows that much better.
+    pub fn conducting(self, factor: f32) -> Self {
+        Self { a: self.a * factor, ..self }
+    }
+
     /// From the derivatives along both axes, mm per texel; `texel_mm` is the usual size of a texel.
     pub fn new([xu, xv]: [Vec3; 2], texel_mm: f32) -> Self {
         let (e, f, g) = (xu.length_squared(), xu.dot(xv), xv.length_squared());
@@ -45,12 +50,24 @@ pub fn metrics(object: &Object, size: usize, texel_mm: f32) -> Vec<Metric> {
     (0..object.mesh.triangles.len()).into_par_iter().map(|t| of(t).unwrap_or_default()).collect()
 }
 
-/// The metric under every texel that a chart covers; nothing elsewhere.
-pub fn metrics_of_texels(atlas: &Atlas, of_triangles: &[Metric]) -> Vec<Metric> {
-    let of = |triangle: u32| {
-        if triangle == NO_CHART { Metric::default() } else { of_triangles[triangle as usize] }
+/// How much better heat flows under a place than by the medium: the factor on its mean free path, squared.
+pub fn conductivity(object: &Object, uv: Vec2) -> f32 {
+    object.material.mean_free_path_scale_at(uv).powi(2)
+}
+
+/// The metric under every texel that a chart covers, and how well heat flows there; nothing elsewhere.
+pub fn metrics_of_texels(object: &Object, atlas: &Atlas, of_triangles: &[Metric]) -> Vec<Metric> {
+    let even = object.material.mean_free_path_scale.texture.is_none();
+    let everywhere = conductivity(object, Vec2::ZERO);
+    let of = |i: usize| {
+        let triangle = atlas.surface[i].triangle;
+        if triangle == NO_CHART {
+            return Metric::default();
+        }
+        let factor = if even { None } else { atlas.uv_under(object, i).map(|uv| conductivity(object, uv)) };
+        of_triangles[triangle as usize].conducting(factor.unwrap_or(everywhere))
     };
-    atlas.surface.par_iter().map(|surface| of(surface.triangle)).collect()
+    (0..atlas.surface.len()).into_par_iter().map(of).collect()
 }
 
 /// dX/du and dX/dv of a triangle, mm per texel. `None` if it has no area in the texture.

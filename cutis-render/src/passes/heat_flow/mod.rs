@@ -64,15 +64,17 @@ pub struct Level {
 }
 
 impl HeatFlow {
-    /// Of an object in its pose, for growing variances, mm².
+    /// Of an object in its pose, for growing variances, mm². Where the mean free path of its material is scaled, variances are by
+    /// the square of that.
     pub fn new(object: &Object, atlas: &Atlas, stretch_mm: &[glam::Vec2], variances_mm2: &[f32]) -> Self {
         let mut texel_mm = median_texel_mm(&atlas.charts, stretch_mm);
+        let narrowest = object.material.least_mean_free_path_scale();
         let mut levels: Vec<Level> = Vec::new();
         let mut left = variances_mm2;
         let (mut atlas, mut fine, mut added_texel2) = (atlas.clone(), None::<Atlas>, 0.0);
         loop {
             let halves = atlas.size.is_multiple_of(2) && atlas.size / 2 >= MIN_SIZE;
-            let wide = |v: &f32| halves && v.sqrt() >= COARSE_DEVIATION_TEXELS * 2.0 * texel_mm;
+            let wide = |v: &f32| halves && v.sqrt() * narrowest >= COARSE_DEVIATION_TEXELS * 2.0 * texel_mm;
             let here = left.iter().position(wide).unwrap_or(left.len());
             let times_mm2: Vec<f32> =
                 left[..here].iter().map(|v| 0.5 * (v - added_texel2 * texel_mm * texel_mm)).collect();
@@ -140,7 +142,7 @@ impl Level {
         let shore = Shore::new(object, atlas);
         let layout = Layout::new(object, &shore);
         let metrics = metrics(object, atlas.size, texel_mm);
-        let of_texels = metrics_of_texels(atlas, &metrics);
+        let of_texels = metrics_of_texels(object, atlas, &metrics);
         let halving = finer.map(|(fine, areas_mm2)| Halving::new(fine, areas_mm2, &shore, &layout));
         let areas_mm2 = halving.as_ref().map(|halving| halving.areas_mm2.as_slice());
         let exchange = Exchange::new(object, &layout, (&metrics, &of_texels), areas_mm2, texel_mm);

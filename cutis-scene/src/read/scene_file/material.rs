@@ -11,7 +11,7 @@ use cutis_optics::{Medium, RgbGaussianSum, TissueLayer};
 use glam::Vec3;
 use std::sync::Arc;
 
-const KNOWN: [&str; 16] = [
+const KNOWN: [&str; 17] = [
     "preset",
     "medium",
     "kernel",
@@ -26,6 +26,7 @@ const KNOWN: [&str; 16] = [
     "roughness",
     "f0",
     "thickness_scale",
+    "mean_free_path_scale",
     "under",
     "mixed_with",
 ];
@@ -63,6 +64,7 @@ pub(super) struct Change {
     roughness: Option<ScalarMap>,
     f0: Option<f32>,
     thickness_scale: Option<f32>,
+    mean_free_path_scale: Option<ScalarMap>,
     under: Option<Vec<ColourMap>>,
     mixed_with: Option<SecondMedium>,
 }
@@ -85,6 +87,7 @@ impl Change {
         set(&mut material.roughness, &self.roughness);
         set(&mut material.f0, &self.f0);
         set(&mut material.thickness_scale, &self.thickness_scale);
+        set(&mut material.mean_free_path_scale, &self.mean_free_path_scale);
         set(&mut material.normal, &self.normal);
         set(&mut material.under, &self.under);
         if self.mixed_with.is_some() {
@@ -120,6 +123,13 @@ pub(super) fn read(keys: &Keys, own: &Material, context: &mut Context) -> Result
         roughness: scalar(keys, "roughness", 0.0..=1.0, ScalarMap::measured_roughness, images)?,
         f0: keys.number_in("f0", 0.0..=1.0)?,
         thickness_scale: keys.number_in("thickness_scale", 0.0..=MAX_THICKNESS_SCALE)?,
+        mean_free_path_scale: scalar(
+            keys,
+            "mean_free_path_scale",
+            Material::MEAN_FREE_PATH_SCALES,
+            plain,
+            images,
+        )?,
         under: under(keys, images)?,
         mixed_with,
     })
@@ -168,9 +178,13 @@ fn mixed_with(
     if let Some(reason) = no_medium(&scattering) {
         return Err(second.error("preset", reason));
     }
-    let plain = |texture| ScalarMap { offset: 0.0, gain: 1.0, texture: Some((texture, 0)) };
     let share = second.required("share", scalar(&second, "share", 0.0..=1.0, plain, images)?)?;
     Ok(Some(SecondMedium { scattering, share }))
+}
+
+/// A map that is the number itself.
+fn plain(texture: Arc<Texture>) -> ScalarMap {
+    ScalarMap { offset: 0.0, gain: 1.0, texture: Some((texture, 0)) }
 }
 
 /// Why a tissue is not a single medium, if it is none.

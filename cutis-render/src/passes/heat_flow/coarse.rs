@@ -1,7 +1,8 @@
 //! From a map of light to one of half the size: every texel gives its energy to the four coarse ones around it.
 
-use super::exchange::{Layout, Rows};
+use super::exchange::Layout;
 use super::row::Light;
+use super::rows::Rows;
 use super::shore::{Shore, centre, corners};
 use crate::passes::atlas::{Atlas, NO_CHART};
 use rayon::prelude::*;

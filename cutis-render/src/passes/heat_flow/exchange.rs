@@ -4,39 +4,33 @@
 //! what S couples: inside of charts those of a texel to its eight neighbours, at their edges those of a sparse matrix.
 
 use super::cells::{Cell, Cells};
-use super::gaps::{Gap, Jump, gaps};
+use super::elements::{elements, rows};
+use super::gaps::{Gap, gaps};
 use super::metric::Metric;
 use super::padding::padding;
+use super::rows::Rows;
 use super::shore::{Read, Shore, corners};
 use cutis_scene::Object;
-use glam::{Mat4, Vec4};
 use rayon::prelude::*;
 use std::ops::Range;
 
 /// What a texel at the edge of a chart may give, per time, by the area of a usual texel: thin strips would set the pace for all
 /// others.
 const FASTEST: f32 = 6.7;
+
 /// What edges of charts need; it depends on the layout of the texture, and stays when the surface moves.
 #[derive(Debug, Clone)]
 pub struct Layout {
-    size: usize,
+    /// Width and height of the atlas, texels.
+    pub size: usize,
     /// Squares that lie on one chart as a whole.
     pub whole: Vec<bool>,
-    cells: Vec<Cell>,
-    gaps: Vec<Gap>,
+    /// Parts of squares at edges of charts.
+    pub cells: Vec<Cell>,
+    /// Places along seams.
+    pub gaps: Vec<Gap>,
     /// Texels of the padding, and what they hold.
     pub padding: Vec<(u32, Read)>,
-}
-
-/// Links at the edges of charts, row by row.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Rows {
-    /// Texels, growing.
-    pub texels: Vec<u32>,
-    /// Where each texel's links begin, and where the last one's end.
-    pub starts: Vec<u32>,
-    /// Texel at the other end, and strength of the link.
-    pub links: Vec<(u32, f32)>,
 }
 
 /// All links, for one pose.
@@ -50,10 +44,10 @@ pub struct Exchange {
     pub rows: Rows,
     /// Area that each texel stands for, mm²; 0 where there is no surface.
     pub areas_mm2: Vec<f32>,
-    /// Where there is surface, row by row.
-    pub runs: Vec<Vec<Range<usize>>>,
     /// Its inverse, 1/mm²; 0 where there is no surface.
     pub per_area: Vec<f32>,
+    /// Where there is surface, row by row.
+    pub runs: Vec<Vec<Range<usize>>>,
     /// Every wave of light falls more slowly, 1/mm².
     pub fastest_rate: f32,
 }
@@ -161,31 +155,6 @@ impl Exchange {
     }
 }
 
-impl Rows {
-    /// Of entries in any order: a texel, the one at the other end, and the strength.
-    pub fn new(mut all: Vec<(u32, u32, f32)>) -> Self {
-        all.par_sort_unstable_by_key(|&(texel, other, _)| (texel, other));
-        let mut rows = Self::default();
-        for (n, &(texel, other, strength)) in all.iter().enumerate() {
-            if rows.texels.last() != Some(&texel) {
-                rows.texels.push(texel);
-                rows.starts.push(n as u32);
-            }
-            rows.links.push((other, strength));
-        }
-        rows.starts.push(all.len() as u32);
-        rows
-    }
-
-    /// Every texel with its links.
-    pub fn iter(&self) -> impl Iterator<Item = (usize, &[(u32, f32)])> {
-        self.texels
-            .iter()
-            .zip(self.starts.windows(2))
-            .map(|(&texel, ends)| (texel as usize, &self.links[ends[0] as usize..ends[1] as usize]))
-    }
-}
-
 fn runs_of(areas_mm2: &[f32]) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for x in (0..areas_mm2.len()).filter(|&x| areas_mm2[x] > 0.0) {
@@ -202,95 +171,4 @@ fn mean(all: [Metric; 4]) -> Metric {
         .iter()
         .fold(Metric::default(), |sum, m| Metric { a: sum.a + m.a, area_mm2: sum.area_mm2 + m.area_mm2 });
     Metric { a: sum.a * 0.25, area_mm2: sum.area_mm2 * 0.25 }
-}
-
-/// What a cell or a gap links, of every pair of texels once.
-struct Element {
-    links: Vec<(u32, u32, f32)>,
-}
-
-/// Of cut cells and gaps; their areas are added.
-fn elements(object: &Object, layout: &Layout, metrics: &[Metric], areas_mm2: &mut [f32]) -> Vec<Element> {
-    let (areas, slopes): (Vec<Vec4>, Vec<Mat4>) =
-        layout.cells.par_iter().map(|cell| cell.integrals(metrics)).unzip();
-    for (cell, areas) in layout.cells.iter().zip(&areas) {
-        for (k, read) in cell.corners.iter().enumerate() {
-            read.iter().for_each(|&(i, weight)| areas_mm2[i as usize] += weight * areas[k]);
-        }
-    }
-    let cells = layout.cells.par_iter().zip(&slopes);
-    let mut all: Vec<Element> =
-        cells.map(|(cell, slopes)| of_cell(cell, &slopes.to_cols_array_2d())).collect();
-    let jump = |gap: &Gap| gap.jump(object, layout.size, metrics, (&layout.cells, &slopes));
-    let jumps: Vec<Jump> = layout.gaps.par_iter().filter_map(jump).collect();
-    let mut loads = vec![0.0f32; layout.cells.len()];
-    for jump in &jumps {
-        jump.cells.iter().for_each(|&cell| loads[cell as usize] += jump.load);
-    }
-    all.par_extend(jumps.par_iter().map(|jump| {
-        let load = jump.cells.iter().map(|&cell| loads[cell as usize]).fold(1.0, f32::max);
-        of_jump(jump, load.sqrt().recip())
-    }));
-    all
-}
-
-fn of_cell(cell: &Cell, slopes: &[[f32; 4]; 4]) -> Element {
-    let mut element = Element { links: Vec::new() };
-    for (k, read) in cell.corners.iter().enumerate() {
-        for (l, others) in cell.corners.iter().enumerate() {
-            for &(i, own) in read {
-                let further = others.iter().filter(|(j, _)| *j > i);
-                further.for_each(|&(j, other)| element.add(i, j, -own * other * slopes[k][l]));
-            }
-        }
-    }
-    element
-}
-
-/// Of a gap, with as much of the flow as its cells can bear.
-fn of_jump(jump: &Jump, part: f32) -> Element {
-    let mut element = Element { links: Vec::new() };
-    for (n, &(i, gap, flow)) in jump.terms.iter().enumerate() {
-        for &(j, other_gap, other_flow) in &jump.terms[..n] {
-            let strength =
-                part * (gap * other_flow + flow * other_gap) - jump.spring_per_mm * gap * other_gap;
-            element.add(i.min(j), i.max(j), jump.length_mm * strength);
-        }
-    }
-    element
-}
-
-impl Element {
-    fn add(&mut self, i: u32, j: u32, strength: f32) {
-        match self.links.iter_mut().find(|(a, b, _)| (*a, *b) == (i, j)) {
-            Some((_, _, sum)) => *sum += strength,
-            None => self.links.push((i, j, strength)),
-        }
-    }
-}
-
-/// All links of elements, each element as strong as the weakest of its texels: an element can only take energy from the slopes of
-/// light, whatever its strength.
-fn rows(elements: &[Element], pace: &[f32]) -> Rows {
-    let mut links: Vec<Vec<(u32, f32)>> = vec![Vec::new(); pace.len()];
-    for Element { links: own } in elements {
-        let weakest = own.iter().map(|&(i, j, _)| pace[i as usize].min(pace[j as usize])).fold(1.0, f32::min);
-        for &(i, j, strength) in own {
-            // Only one of both directions is added up; the other one is its copy.
-            let row = &mut links[i as usize];
-            match row.iter_mut().find(|(other, _)| *other == j) {
-                Some((_, sum)) => *sum += weakest * strength,
-                None => row.push((j, weakest * strength)),
-            }
-        }
-    }
-    mirrored(&links)
-}
-
-fn mirrored(upper: &[Vec<(u32, f32)>]) -> Rows {
-    let mut all: Vec<(u32, u32, f32)> = Vec::new();
-    for (i, row) in upper.iter().enumerate() {
-        all.extend(row.iter().flat_map(|&(j, link)| [(i as u32, j, link), (j, i as u32, link)]));
-    }
-    Rows::new(all)
 }

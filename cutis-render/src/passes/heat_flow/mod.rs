@@ -11,11 +11,13 @@
 mod cells;
 mod chebyshev;
 pub mod coarse;
+mod elements;
 pub mod exchange;
 mod gaps;
 mod metric;
 mod padding;
 mod row;
+pub mod rows;
 pub mod shore;
 mod walk;
 

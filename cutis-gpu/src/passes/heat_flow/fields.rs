@@ -1,0 +1,156 @@
+//! What a level needs on the device: links, their sparse rows, and maps for polynomials and sums.
+
+use super::LIGHT;
+use crate::Gpu;
+use crate::map::{Map, View};
+use crate::pipeline::{Bound, Pipeline};
+use crate::step::{Draw, Step};
+use bytemuck::{Pod, Zeroable};
+use cutis_render::passes::heat_flow::Level;
+use cutis_render::passes::heat_flow::rows::Rows;
+use glam::Vec4;
+use half::f16;
+use wgpu::TextureFormat as Format;
+
+/// Largest pace: 16 bits hold no more.
+const FASTEST_PACE: f32 = 6e4;
+
+/// A link of a row; its twin has the same name.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct Link {
+    /// Texel at the other end.
+    pub texel: u32,
+    /// Its strength.
+    pub strength: f32,
+}
+
+/// A sparse matrix on the device.
+#[derive(Debug)]
+pub struct GpuRows {
+    /// Each row's texel, and where its links begin; the last one says where they end.
+    pub rows: wgpu::Buffer,
+    /// All links.
+    pub links: wgpu::Buffer,
+    /// Number of rows.
+    pub count: u32,
+}
+
+/// What a level needs on the device.
+pub struct Fields {
+    /// What of each neighbour's difference a texel takes at once: from the east on, and from the west on.
+    pub taken: [Map; 2],
+    /// How much of what flows a texel takes: the inverse of its area.
+    pub paces: Map,
+    /// What texels at the edges of charts take from further away.
+    pub edges: GpuRows,
+    /// What the padding reads.
+    pub padding: GpuRows,
+    /// Where that is kept.
+    pub kept: wgpu::Buffer,
+    /// Polynomials, in turn.
+    pub turns: [Map; 3],
+    /// Where sums are in turn with their level.
+    pub spare: Map,
+}
+
+impl Fields {
+    /// Of a level.
+    pub fn new(gpu: &Gpu, level: &Level) -> Self {
+        let exchange = &level.exchange;
+        let size = exchange.size as u32;
+        let taken = taken(level);
+        let speed = 2.0 / exchange.fastest_rate;
+        let paces =
+            exchange.per_area.iter().map(|per_area| f16::from_f32((per_area * speed).min(FASTEST_PACE)));
+        let bytes: Vec<u8> = paces.flat_map(|pace| pace.to_bits().to_le_bytes()).collect();
+        let entries =
+            level.padding.iter().flat_map(|(texel, read)| read.iter().map(move |&(t, w)| (*texel, t, w)));
+        let padding = GpuRows::new(gpu, &Rows::new(entries.collect()));
+        Self {
+            taken: [0, 1]
+                .map(|side| Map::of_values(gpu, "taken", [size, size], taken.iter().map(move |t| t[side]))),
+            paces: Map::filled(gpu, "paces", [size, size], Format::R16Float, &bytes),
+            edges: GpuRows::new(gpu, &taken_further(level)),
+            kept: gpu.storage("padding", &vec![Vec4::ZERO; padding.count as usize]),
+            padding,
+            turns: std::array::from_fn(|_| Map::square(gpu, "polynomial", size, 1, LIGHT)),
+            spare: Map::square(gpu, "sums", size, level.times.len().max(1) as u32, LIGHT),
+        }
+    }
+}
+
+/// What of the differences of its eight neighbours every texel takes at once, counter-clockwise: from the east, and from the west
+/// on.
+fn taken(level: &Level) -> Vec<[Vec4; 2]> {
+    let exchange = &level.exchange;
+    let size = exchange.size;
+    let speed = 2.0 / exchange.fastest_rate;
+    // Inner squares link no texel along the edges of the map.
+    let of = |i: usize| {
+        if i <= size || i + size + 1 >= exchange.links.len() {
+            return [Vec4::ZERO; 2];
+        }
+        let links = |i: usize| exchange.links[i];
+        let [e, n, ne, nw] = links(i);
+        let east = Vec4::new(e, ne, n, nw);
+        let west =
+            Vec4::new(links(i - 1)[0], links(i - size - 1)[2], links(i - size)[1], links(i - size + 1)[3]);
+        [east, west].map(|links| links * exchange.per_area[i] * speed)
+    };
+    (0..exchange.links.len()).map(of).collect()
+}
+
+/// The same from further away.
+fn taken_further(level: &Level) -> Rows {
+    let exchange = &level.exchange;
+    let speed = 2.0 / exchange.fastest_rate;
+    let mut rows = exchange.rows.clone();
+    for (&texel, ends) in rows.texels.iter().zip(exchange.rows.starts.windows(2)) {
+        let links = &mut rows.links[ends[0] as usize..ends[1] as usize];
+        links.iter_mut().for_each(|(_, link)| *link *= exchange.per_area[texel as usize] * speed);
+    }
+    rows
+}
+
+impl GpuRows {
+    /// Of a matrix.
+    pub fn new(gpu: &Gpu, rows: &Rows) -> Self {
+        let last = rows.starts.last().copied().unwrap_or(0);
+        let pairs = rows.texels.iter().zip(&rows.starts).map(|(&texel, &start)| [texel, start]);
+        let pairs: Vec<[u32; 2]> = pairs.chain([[0, last]]).collect();
+        let links: Vec<Link> = rows.links.iter().map(|&(texel, strength)| Link { texel, strength }).collect();
+        Self {
+            rows: gpu.storage("rows", &pairs),
+            links: gpu.storage("links", &links),
+            count: rows.texels.len() as u32,
+        }
+    }
+
+    /// A point for every row.
+    pub fn draw(
+        &self,
+        gpu: &Gpu,
+        pipeline: &Pipeline,
+        bound: &[(u32, Bound)],
+        target: &View,
+    ) -> Option<Step> {
+        let mut all = bound.to_vec();
+        all.extend([(9, Bound::Buffer(&self.rows)), (10, Bound::Buffer(&self.links))]);
+        (self.count > 0).then(|| points(gpu, pipeline, &all, target, self.count))
+    }
+}
+
+/// A point for every vertex.
+pub fn points(gpu: &Gpu, pipeline: &Pipeline, bound: &[(u32, Bound)], target: &View, count: u32) -> Step {
+    Step::Draw(Draw {
+        pipeline: pipeline.clone(),
+        bind_groups: vec![pipeline.bind(gpu, 0, bound)],
+        targets: vec![target.clone()],
+        depth: None,
+        clear: None,
+        indices: None,
+        vertices: count,
+        instances: 1,
+    })
+}

@@ -1,0 +1,101 @@
+//! What cut cells and gaps link, put together into one matrix.
+
+use super::cells::Cell;
+use super::exchange::Layout;
+use super::gaps::{Gap, Jump};
+use super::metric::Metric;
+use super::rows::Rows;
+use cutis_scene::Object;
+use glam::{Mat4, Vec4};
+use rayon::prelude::*;
+
+/// What a cell or a gap links, of every pair of texels once.
+pub struct Element {
+    links: Vec<(u32, u32, f32)>,
+}
+
+/// Of cut cells and gaps; their areas are added.
+pub fn elements(object: &Object, layout: &Layout, metrics: &[Metric], areas_mm2: &mut [f32]) -> Vec<Element> {
+    let (areas, slopes): (Vec<Vec4>, Vec<Mat4>) =
+        layout.cells.par_iter().map(|cell| cell.integrals(metrics)).unzip();
+    for (cell, areas) in layout.cells.iter().zip(&areas) {
+        for (k, read) in cell.corners.iter().enumerate() {
+            read.iter().for_each(|&(i, weight)| areas_mm2[i as usize] += weight * areas[k]);
+        }
+    }
+    let cells = layout.cells.par_iter().zip(&slopes);
+    let mut all: Vec<Element> =
+        cells.map(|(cell, slopes)| of_cell(cell, &slopes.to_cols_array_2d())).collect();
+    let jump = |gap: &Gap| gap.jump(object, layout.size, metrics, (&layout.cells, &slopes));
+    let jumps: Vec<Jump> = layout.gaps.par_iter().filter_map(jump).collect();
+    let mut loads = vec![0.0f32; layout.cells.len()];
+    for jump in &jumps {
+        jump.cells.iter().for_each(|&cell| loads[cell as usize] += jump.load);
+    }
+    all.par_extend(jumps.par_iter().map(|jump| {
+        let load = jump.cells.iter().map(|&cell| loads[cell as usize]).fold(1.0, f32::max);
+        of_jump(jump, load.sqrt().recip())
+    }));
+    all
+}
+
+fn of_cell(cell: &Cell, slopes: &[[f32; 4]; 4]) -> Element {
+    let mut element = Element { links: Vec::new() };
+    for (k, read) in cell.corners.iter().enumerate() {
+        for (l, others) in cell.corners.iter().enumerate() {
+            for &(i, own) in read {
+                let further = others.iter().filter(|(j, _)| *j > i);
+                further.for_each(|&(j, other)| element.add(i, j, -own * other * slopes[k][l]));
+            }
+        }
+    }
+    element
+}
+
+/// Of a gap, with as much of the flow as its cells can bear.
+fn of_jump(jump: &Jump, part: f32) -> Element {
+    let mut element = Element { links: Vec::new() };
+    for (n, &(i, gap, flow)) in jump.terms.iter().enumerate() {
+        for &(j, other_gap, other_flow) in &jump.terms[..n] {
+            let strength =
+                part * (gap * other_flow + flow * other_gap) - jump.spring_per_mm * gap * other_gap;
+            element.add(i.min(j), i.max(j), jump.length_mm * strength);
+        }
+    }
+    element
+}
+
+impl Element {
+    fn add(&mut self, i: u32, j: u32, strength: f32) {
+        match self.links.iter_mut().find(|(a, b, _)| (*a, *b) == (i, j)) {
+            Some((_, _, sum)) => *sum += strength,
+            None => self.links.push((i, j, strength)),
+        }
+    }
+}
+
+/// All links of elements, each element as strong as the weakest of its texels lets it be. A gap has all texels of its cells: it is
+/// never stronger than they are, and together they can only take energy from the slopes of light.
+pub fn rows(elements: &[Element], pace: &[f32]) -> Rows {
+    let mut links: Vec<Vec<(u32, f32)>> = vec![Vec::new(); pace.len()];
+    for Element { links: own } in elements {
+        let weakest = own.iter().map(|&(i, j, _)| pace[i as usize].min(pace[j as usize])).fold(1.0, f32::min);
+        for &(i, j, strength) in own {
+            // Only one of both directions is added up; the other one is its copy.
+            let row = &mut links[i as usize];
+            match row.iter_mut().find(|(other, _)| *other == j) {
+                Some((_, sum)) => *sum += weakest * strength,
+                None => row.push((j, weakest * strength)),
+            }
+        }
+    }
+    mirrored(&links)
+}
+
+fn mirrored(upper: &[Vec<(u32, f32)>]) -> Rows {
+    let mut all: Vec<(u32, u32, f32)> = Vec::new();
+    for (i, row) in upper.iter().enumerate() {
+        all.extend(row.iter().flat_map(|&(j, link)| [(i as u32, j, link), (j, i as u32, link)]));
+    }
+    Rows::new(all)
+}

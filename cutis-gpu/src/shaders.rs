@@ -81,11 +81,12 @@ pub const BLUR: &str = wgsl!("lib/tiles.wgsl", "passes/blur.wgsl");
 /// Pass `blur`: to half the size.
 pub const HALVE: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "passes/halve.wgsl");
 /// Pass `heat flow`: from texel to texel.
-pub const HEAT_FLOW: &str = wgsl!("lib/tiles.wgsl", "lib/heat.wgsl", "passes/heat_flow/step.wgsl");
+pub const HEAT_FLOW: &str =
+    wgsl!("lib/tiles.wgsl", "lib/rounding.wgsl", "lib/heat.wgsl", "passes/heat_flow/step.wgsl");
 /// Pass `heat flow`: to half the size.
-pub const HEAT_HALVE: &str = wgsl!("lib/tiles.wgsl", "passes/heat_flow/halve.wgsl");
+pub const HEAT_HALVE: &str = wgsl!("lib/tiles.wgsl", "lib/rounding.wgsl", "passes/heat_flow/halve.wgsl");
 /// Pass `heat flow`: at the edges of charts.
-pub const HEAT_ROWS: &str = wgsl!("lib/heat.wgsl", "passes/heat_flow/rows.wgsl");
+pub const HEAT_ROWS: &str = wgsl!("lib/rounding.wgsl", "lib/heat.wgsl", "passes/heat_flow/rows.wgsl");
 /// Pass `blur` of the technique `texture-blur`.
 pub const SEVEN_TAPS: &str = wgsl!("lib/tiles.wgsl", "lib/charts.wgsl", "passes/seven_taps.wgsl");
 /// Pass `transmission` of the technique `texture-blur`.

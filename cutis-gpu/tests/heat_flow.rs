@@ -58,7 +58,7 @@ fn apart(charts: &[u32], a: &[Vec4], b: &[Vec4]) -> [f32; 2] {
     [off.iter().sum::<f32>() / off.len() as f32, off[off.len() * 999 / 1000]]
 }
 
-/// The head, and the same layout with a coarse level: variances grow until one is wide.
+/// The head, with variances that grow until one is wide enough for a coarse map.
 #[test]
 fn both_machines_spread_the_same_light() {
     let Some(renderer) = renderer("both_machines_spread_the_same_light") else { return };

@@ -4,6 +4,7 @@ use cutis_gpu::passes::depth_map::Grown;
 use cutis_gpu::passes::diffusion::{Along, Halved, Widening};
 use cutis_gpu::passes::downsample::Pixels;
 use cutis_gpu::passes::gather::{Gaussian, Gaussians};
+use cutis_gpu::passes::heat_flow::{Link, Stage};
 use cutis_gpu::passes::inside::depth_absorption::DepthAbsorption;
 use cutis_gpu::passes::inside::wrap::Wrap;
 use cutis_gpu::passes::levels::{LevelSize, MAX_GAUSSIANS, MAX_SIZES};
@@ -331,4 +332,12 @@ fn image_space_matches_wgsl() {
     for (name, value) in expected {
         assert_eq!(constant(shaders::SAMPLE_PROFILE, name), value, "{name}");
     }
+}
+
+#[test]
+fn heat_flow_matches_wgsl() {
+    for source in [shaders::HEAT_FLOW, shaders::HEAT_ROWS] {
+        same_layout!(Stage, source, "Stage", [parts, parts_before, kept, factor, part, size, seed]);
+    }
+    same_layout!(Link, shaders::HEAT_ROWS, "Link", [texel, strength]);
 }

@@ -194,15 +194,18 @@ fn a_bump_on_a_plane_widens_whatever_the_layout() {
 #[test]
 fn the_mean_free_path_scales_how_far_heat_flows() {
     let mut object = in_pieces(4, 7);
-    object.material.mean_free_path_scale = ScalarMap::constant(2.0);
     let own_mm2 = 3.0f32;
     let bump = |v: f32| move |p: Vec3| own_mm2 / v * (-p.length_squared() / (2.0 * v)).exp();
-    let lit = flown(&object, 512, 3.0, bump(own_mm2));
-    let expected = bump(own_mm2 + 4.0 * 3.0);
-    let worst =
-        lit.iter().map(|l| (l.after - expected(l.place_mm)).abs() / expected(Vec3::ZERO)).fold(0.0, f32::max);
-    eprintln!("worst {worst} of the peak");
-    assert!(worst < 0.01, "{worst}");
+    // The same widths by other means, on the map itself and on coarse ones.
+    for (scale, spread_mm2) in [(0.3, 1.0), (2.0, 12.0), (5.0, 12.0), (10.0, 3.0), (10.0, 12.0)] {
+        object.material.mean_free_path_scale = ScalarMap::constant(scale);
+        let lit = flown(&object, 512, spread_mm2 / (scale * scale), bump(own_mm2));
+        let expected = bump(own_mm2 + spread_mm2);
+        let off = |l: &Lit| (l.after - expected(l.place_mm)).abs() / expected(Vec3::ZERO);
+        let worst = lit.iter().map(off).fold(0.0, f32::max);
+        eprintln!("{scale}, {spread_mm2} mm²: worst {worst} of the peak");
+        assert!(worst < 0.01, "{scale}, {spread_mm2}: {worst}");
+    }
     let texels = (0..256).map(|i| if i % 16 < 8 { [0.25; 4] } else { [1.0; 4] }).collect();
     let texture = Texture::new(16, 16, Texels::LinearF32(texels));
     object.material.mean_free_path_scale =
@@ -331,6 +334,31 @@ fn the_transpose_is_one() {
     assert!((forth - back).abs() < 1e-12 * size_of_terms, "{forth} {back}");
 }
 
+/// A triangle that is inside out, an island of a few texels, and corners far beside the map are drawn around, not into.
+#[test]
+fn odd_meshes_are_lit_where_they_can_be() {
+    let mut object = plane(in_four);
+    object.mesh.triangles[40].swap(1, 2);
+    let base = object.mesh.positions_mm.len() as u32;
+    let island = [[0.0, 0.0], [3.4, 0.0], [0.0, 3.4]].map(|uv| (Vec2::from_array(uv) + 2.0) / 256.0);
+    let far = [Vec2::splat(-9000.0), Vec2::new(9000.0, -9000.0), Vec2::new(0.0, -9000.0)];
+    for (k, uvs) in [island, far].into_iter().enumerate() {
+        for (i, uv) in uvs.into_iter().enumerate() {
+            let corner = [[0.0, 0.0], [9.0, 0.0], [0.0, 9.0]][i];
+            object.mesh.positions_mm.push(Vec2::from_array(corner).extend(50.0 * (k + 1) as f32));
+            object.mesh.uvs.push(uv);
+        }
+    }
+    object.mesh.triangles.extend([[base, base + 1, base + 2], [base + 3, base + 4, base + 5]]);
+    let object = Object::new("odd", object.mesh, Material::default());
+    let count = object.mesh.triangles.len();
+    let lit = flown(&object, 256, 200.0, |_| 1.0);
+    let off = |l: &&Lit| (l.after - 1.0).abs();
+    // Four places of every triangle; the last one lies on no texel.
+    let worst = lit[..4 * (count - 1)].iter().max_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
+    assert!(off(&worst) < 1e-3, "{} at {}", worst.after, worst.place_mm);
+}
+
 /// Whatever the mesh and its layout: slopes of light only fall, so that the sum of its squares does, and no energy is made or lost.
 #[test]
 fn no_input_makes_it_explode() {
@@ -346,24 +374,35 @@ fn no_input_makes_it_explode() {
             *uv = (*uv + torn * Vec2::new(noise(i, seed + 300), noise(i, seed + 400))).min(Vec2::ONE);
         }
         let object = Object::new("rough", object.mesh, Material::default());
-        let size = 128;
+        let size = 256;
         let atlas = Atlas::new(&object, size);
-        let variances_mm2 = [1.0, 10.0, 100.0];
+        let variances_mm2 = [1.0, 10.0, 1000.0];
         let flow = HeatFlow::new(&object, &atlas, &stretch_mm_per_texel(&object, &atlas), &variances_mm2);
         let light: Vec<f64> = (0..size * size).map(|i| f64::from(noise(i / 7, 5).round())).collect();
         let maps = flow.flow(&light);
         let most = maps.iter().flatten().fold(0.0f64, |most, light| most.max(light.abs()));
-        let squares =
-            |map: &[f64]| map.iter().zip(flow.areas_mm2()).map(|(l, &a)| l * l * f64::from(a)).sum::<f64>();
-        let left: Vec<f64> = maps.iter().map(|map| squares(map) / squares(&light)).collect();
-        let energy =
-            |map: &[f64]| map.iter().zip(flow.areas_mm2()).map(|(l, &a)| l * f64::from(a)).sum::<f64>();
-        let change = energy(&maps[0]) / energy(&light) - 1.0;
+        let sum = |map: &[f64], areas_mm2: &[f32], power: i32| -> f64 {
+            map.iter().zip(areas_mm2).map(|(light, &area)| light.powi(power) * f64::from(area)).sum()
+        };
+        let areas_mm2 = flow.areas_mm2();
+        let squares = |map: &[f64]| sum(map, areas_mm2, 2);
+        let own = maps.iter().filter(|map| map.len() == light.len());
+        let left: Vec<f64> = own.map(|map| squares(map) / squares(&light)).collect();
+        let levels =
+            flow.levels.iter().flat_map(|level| level.times.iter().map(|_| &level.exchange.areas_mm2));
+        let energies = maps.iter().zip(levels).map(|(map, areas_mm2)| sum(map, areas_mm2, 1));
+        let before = sum(&light, areas_mm2, 1);
+        let change = energies.map(|energy| (energy / before - 1.0).abs()).fold(0.0, f64::max);
         eprintln!(
             "seed {seed}, rough {rough}, torn {torn}: at most {most:.3}, squares {left:.4?}, energy {change:e}"
         );
-        assert!(left.is_sorted_by(|a, b| a >= b) && left[0] < 1.0, "seed {seed}: {left:?}");
+        assert!(
+            left.is_sorted_by(|a, b| a >= b) && left.iter().all(|left| *left < 1.0),
+            "seed {seed}: {left:?}"
+        );
         assert!(most < 10.0, "seed {seed}: {most}");
-        assert!(change.abs() < 1e-4, "seed {seed}: {change}");
+        // Torn to pieces of a texel, charts have no place on coarse maps, and their light none to go.
+        let allowed = if torn > 0.01 { 0.2 } else { 1e-3 };
+        assert!(change < allowed, "seed {seed}: {change}");
     }
 }

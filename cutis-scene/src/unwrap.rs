@@ -12,8 +12,8 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use uvunwrap::{MeshInput, Options, Progress};
 
-/// Marks a kept atlas; it changes when atlases are made otherwise.
-const MAGIC: [u8; 8] = *b"cutisuv1";
+/// Marks a kept atlas: one by version 0.2 of uvunwrap. It changes when atlases are made otherwise.
+const MAGIC: [u8; 8] = *b"uvwrap02";
 
 /// Time that passes between two words about the work.
 const BETWEEN_WORDS: Duration = Duration::from_secs(1);

@@ -20,7 +20,7 @@ fn has_an_atlas(object: &Object) -> bool {
     Charts::inside_unit_square(&object.mesh) && Charts::overlap_fraction(&object.mesh, 512) < 1e-3
 }
 
-/// A cube of bare faces, some with normals.
+/// A cube of bare faces.
 const CUBE_OBJ: &str = "v 0 0 0\nv 50 0 0\nv 50 50 0\nv 0 50 0\nv 0 0 50\nv 50 0 50\nv 50 50 50\nv 0 50 50\n\
     f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
@@ -71,8 +71,14 @@ fn an_atlas_is_kept_and_found_again() {
     let (first, second) = (load(&path, Some(&cache)), load(&path, Some(&cache)));
     assert_eq!(std::fs::read_dir(&cache).unwrap().count(), 1, "one atlas is kept");
     assert_eq!(first.objects[0].mesh.uvs, second.objects[0].mesh.uvs);
-    // What is there instead is not believed.
+    // What is kept is what is taken.
     let kept = std::fs::read_dir(&cache).unwrap().next().unwrap().unwrap().path();
+    let mut bytes = std::fs::read(&kept).unwrap();
+    let first_u = 16 + 4 * u32::from_le_bytes(bytes[8..12].try_into().unwrap()) as usize;
+    bytes[first_u..first_u + 4].copy_from_slice(&0.125f32.to_le_bytes());
+    std::fs::write(&kept, &bytes).unwrap();
+    assert_eq!(load(&path, Some(&cache)).objects[0].mesh.uvs[0].x, 0.125);
+    // What is there instead is not believed.
     std::fs::write(&kept, b"nothing of use").unwrap();
     assert_eq!(first.objects[0].mesh.uvs, load(&path, Some(&cache)).objects[0].mesh.uvs);
 }

@@ -70,3 +70,24 @@ fn gpu_takes_whatever_adapter_there_is_and_names_it() {
     let picture = image::open(folder.path().join("cutis.png")).expect("a picture").to_rgba8();
     assert!(picture.pixels().filter(|p| p.0[0] > 60).count() > 200, "the head is lit");
 }
+
+#[test]
+fn heat_flows_on_adapters_too() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (first, count) = BACKEND_FLAGS;
+    let mut command = cutis(folder.path());
+    command.args(&TINY[..first]).args(&TINY[first + count..]);
+    command.args(["--backend", "gpu", "--diffusion", "heat-flow", "--json"]);
+    let output = command.output().expect("starts");
+    if stderr(&output).contains("there is no graphics adapter") {
+        let required = std::env::var_os("CUTIS_REQUIRE_GPU").is_some_and(|v| v == "1");
+        assert!(!required, "{}", stderr(&output));
+        eprintln!("SKIPPED: heat_flows_on_adapters_too: no adapter");
+        return;
+    }
+    let json = json(&output);
+    assert_eq!((&json["backend"], &json["diffusion"]), (&"gpu".into(), &"heat-flow".into()));
+    let passes = json["passes"].as_array().expect("a list");
+    assert!(passes.iter().any(|pass| pass["name"] == "heat flow"), "{passes:?}");
+    assert!(!passes.iter().any(|pass| pass["name"] == "blur"), "{passes:?}");
+}

@@ -26,20 +26,6 @@ struct Stage {
     seed: u32,
 }
 
-/// One of the two nearest values that 16 bits hold, at random, by how near they are. Some adapters round towards zero where they
-/// store, and rounding to the nearest makes the same error in neighbours: over the stages both would grow.
-fn rounded(light: vec4f, texel: vec2i) -> vec4f {
-    return bitcast<vec4f>((bitcast<vec4u>(light) + (noise(texel) & vec4u(0x1fffu))) & vec4u(0xffffe000u));
-}
-
-/// Random bits, others for every texel and stage.
-fn noise(texel: vec2i) -> vec4u {
-    var h = (u32(texel.x) * 0x9E3779B1u) ^ (u32(texel.y) * 0x85EBCA77u) ^ stage.seed;
-    h = (h ^ (h >> 15u)) * 0x2C1B3C6Du;
-    h ^= h >> 13u;
-    return vec4u(h, h >> 6u, h >> 12u, h >> 18u);
-}
-
 fn known(uv: vec2f, own: vec4f) -> vec4f {
     return textureSampleLevel(now, nearest, uv, 0.0) - own;
 }
@@ -71,5 +57,5 @@ fn next(at: Here, further: vec4f) -> vec4f {
     moved += known(at.uv + vec2f(-step, -step), at.now) * west.y;
     moved += known(at.uv + vec2f(0.0, -step), at.now) * west.z;
     moved += known(at.uv + vec2f(step, -step), at.now) * west.w;
-    return rounded(stage.factor * moved - stage.part * at.before, at.texel);
+    return rounded(stage.factor * moved - stage.part * at.before, at.texel, stage.seed);
 }

@@ -83,10 +83,18 @@ fn to_object(
     match troubles.first() {
         // Maps lie where the texture coordinates say; without any the mesh may have others.
         Some(trouble) if !material.has_maps() => {
-            let made = unwrap(&mut mesh, options.cache_folder.as_deref(), options.tell);
-            made.map_err(|why| fail(format!("{trouble}, and no atlas could be made: {why}")))?;
-            let charts = Charts::find(&mesh, &weld(&mesh.positions_mm)).count;
-            warnings.push(format!("{place}: {trouble}; an atlas of {charts} charts was made"));
+            match unwrap(&mut mesh, options.cache_folder.as_deref(), options.tell) {
+                Ok(()) => {
+                    let charts = Charts::find(&mesh, &weld(&mesh.positions_mm)).count;
+                    warnings.push(format!("{place}: {trouble}; an atlas of {charts} charts was made"));
+                }
+                Err(why) if lacks_uvs => {
+                    return Err(fail(format!("{trouble}, and no atlas could be made: {why}")));
+                }
+                Err(why) => warnings.push(format!(
+                    "{place}: {trouble}, and no atlas could be made ({why}); diffusion in texture space will mix those places"
+                )),
+            }
         }
         _ => {
             let mixed =

@@ -20,5 +20,5 @@ fn halve_heat(@builtin(position) position: vec4f) -> @location(0) vec4f {
         sum += energy * textureLoad(fine, texel, 0);
         whole += energy;
     }
-    return sum / max(whole, 1e-30);
+    return rounded(sum / max(whole, 1e-30), vec2i(position.xy), 0u);
 }

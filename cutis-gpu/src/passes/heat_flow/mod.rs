@@ -19,6 +19,7 @@ use bytemuck::{Pod, Zeroable};
 use cutis_render::passes::blur::Widening;
 use cutis_render::passes::diffusion::Action;
 use cutis_render::passes::heat_flow::HeatFlow;
+pub use fields::Link;
 use fields::{Fields, GpuRows};
 use row::Row;
 use wgpu::TextureFormat as Format;

@@ -35,7 +35,7 @@ fn reading(row: u32, size: u32) -> vec4f {
         let other = further[n].texel;
         sum += textureLoad(now, vec2i(i32(other % size), i32(other / size)), 0) * further[n].strength;
     }
-    return rounded(sum, texel_of(rows[row].x));
+    return rounded(sum, texel_of(rows[row].x), stage.seed);
 }
 
 /// The next polynomial of a texel that takes from further away.

@@ -16,8 +16,9 @@ struct Stepped {
 
 /// A sum with what this stage and the one before it give.
 fn added(sum: texture_2d<f32>, at: Here, n: u32) -> vec4f {
-    let so_far = stage.kept[n] * textureSampleLevel(sum, nearest, at.uv, 0.0);
-    return rounded(so_far + stage.parts[n] * at.now + stage.parts_before[n] * at.before, at.texel);
+    // What is there before the first is of no concern, be it a number or not.
+    let so_far = select(vec4f(0.0), textureSampleLevel(sum, nearest, at.uv, 0.0), stage.kept[n] > 0.0);
+    return rounded(so_far + stage.parts[n] * at.now + stage.parts_before[n] * at.before, at.texel, stage.seed);
 }
 
 @fragment

@@ -113,7 +113,7 @@ impl Cell {
         })
     }
 
-    /// Whether all corners are texels of their own.
+    /// The texel of each corner that reads just one.
     fn signature(corners: &[Read; 4]) -> [u32; 4] {
         corners.each_ref().map(|read| if read.len() == 1 { read[0].0 } else { u32::MAX })
     }

@@ -1,12 +1,12 @@
 //! Heat after a time as a sum of Chebyshev polynomials of the exchange: f(L) = Σ c_k T_k(1 - 2 L/λ), λ the fastest rate.
 //!
 //! The terms fall as exp(-k²/2z) with z = t λ/2, so that their number grows with the square root of the variance. Unlike
-//! Runge–Kutta–Chebyshev steps, which are exact for slow waves only, the sum is within [`ERROR`] for all, and one row of
+//! Runge–Kutta–Chebyshev steps, which are exact for slow waves only, the sum is within twice [`ERROR`] for all, and one row of
 //! polynomials serves every time.
 
 use std::f64::consts::PI;
 
-/// Part of a wave by which the sum may miss it.
+/// Part of a wave that is left out of the sum; as the rest is brought back to 1, waves may be missed by twice that.
 const ERROR: f64 = 1e-3;
 /// Waves on texels of width h fall at k² (1 - k² h²/12), not k²; this gives that part back.
 const LAG: f64 = 1.0 / 12.0;

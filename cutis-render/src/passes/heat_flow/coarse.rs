@@ -24,6 +24,8 @@ pub struct Halving {
     pub areas_mm2: Vec<f32>,
     /// Fine texels in other squares, the coarse ones around them, and their parts.
     rest: Vec<(u32, u32, f32)>,
+    /// Coarse texels that stand for no area, the fine texels of their chart under them, and the part of each in their mean.
+    bare: Vec<(u32, u32, f32)>,
 }
 
 impl Halving {
@@ -57,11 +59,22 @@ impl Halving {
             fine_mm2: fine_mm2.to_vec(),
             areas_mm2: Vec::new(),
             rest,
+            bare: Vec::new(),
         };
         halving.areas_mm2 = halving
             .gathered(&fine_mm2.iter().map(|&a| f64::from(a)).collect::<Vec<_>>())
             .iter()
             .map(|&a| a as f32)
+            .collect();
+        halving.bare = (0..size * size)
+            .filter(|&i| halving.areas_mm2[i] <= 0.0 && shore.chart(i) != NO_CHART)
+            .flat_map(|i| {
+                let children = fine.charts.children(i % size, i / size);
+                let own: Vec<usize> =
+                    children.into_iter().filter(|&c| fine.charts.chart[c] == shore.chart(i)).collect();
+                let part = (own.len() as f32).recip();
+                own.into_iter().map(move |child| (i as u32, child as u32, part))
+            })
             .collect();
         halving
     }
@@ -88,8 +101,10 @@ impl Halving {
             }
         }
         for (to, fine, weight) in &mut all {
-            *weight *= self.fine_mm2[*fine as usize] / self.areas_mm2[*to as usize];
+            let energy = f64::from(*weight * self.fine_mm2[*fine as usize]);
+            *weight = by_area(energy, self.areas_mm2[*to as usize]) as f32;
         }
+        all.extend(&self.bare);
         Rows::new(all)
     }
 
@@ -99,6 +114,9 @@ impl Halving {
             light.par_iter().zip(&self.fine_mm2).map(|(&light, &area)| light.times(area)).collect();
         let mut coarse = self.gathered(&energy);
         coarse.par_iter_mut().zip(&self.areas_mm2).for_each(|(light, &area)| *light = by_area(*light, area));
+        for &(to, fine, part) in &self.bare {
+            coarse[to as usize] = coarse[to as usize] + light[fine as usize].times(part);
+        }
         coarse
     }
 
@@ -118,7 +136,12 @@ impl Halving {
         for &(texel, from, weight) in &self.rest {
             fine[texel as usize] = fine[texel as usize] + given[from as usize].times(weight);
         }
-        fine.iter().zip(&self.fine_mm2).map(|(&light, &area)| light.times(area)).collect()
+        let mut fine: Vec<L> =
+            fine.iter().zip(&self.fine_mm2).map(|(&light, &area)| light.times(area)).collect();
+        for &(from, texel, part) in &self.bare {
+            fine[texel as usize] = fine[texel as usize] + coarse[from as usize].times(part);
+        }
+        fine
     }
 
     fn gathered<L: Light>(&self, energy: &[L]) -> Vec<L> {

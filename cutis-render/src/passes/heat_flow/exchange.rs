@@ -18,6 +18,9 @@ use std::ops::Range;
 /// others.
 const FASTEST: f32 = 6.7;
 
+/// Least area of a texel that holds light, by that of a usual one.
+const LEAST_AREA: f32 = 1e-6;
+
 /// What edges of charts need; it depends on the layout of the texture, and stays when the surface moves.
 #[derive(Debug, Clone)]
 pub struct Layout {
@@ -105,6 +108,10 @@ impl Exchange {
             .collect();
         let elements = elements(object, layout, metrics, &mut own_mm2);
         let areas_mm2 = areas_mm2.map_or(own_mm2, <[f32]>::to_vec);
+        // What is less is rounding, and its inverse beyond bounds.
+        let least_mm2 = LEAST_AREA * texel_mm * texel_mm;
+        let areas_mm2: Vec<f32> =
+            areas_mm2.into_iter().map(|area| if area > least_mm2 { area } else { 0.0 }).collect();
         let per_area = areas_mm2.iter().map(|&area| if area > 0.0 { area.recip() } else { 0.0 }).collect();
         let runs = areas_mm2.par_chunks(size).map(runs_of).collect();
         let mut exchange =

@@ -69,7 +69,7 @@ fn along_edge(shore: &Shore, cells: &Cells, triangle: u32, corner: u8) -> Vec<Ga
         return Vec::new();
     }
     let ([a, b], [d, c]) = (shore.ground.edge(triangle, corner), shore.ground.edge(other, there));
-    let count = (PLACES_PER_TEXEL * (b - a).length().max((d - c).length())).ceil().max(1.0) as usize;
+    let count = shore.places_along((a, b), (c, d), PLACES_PER_TEXEL);
     let gap = |i: usize| {
         let (along, part) = ((i as f32 + 0.5) / count as f32, 1.0 / count as f32);
         let here = side(shore, cells, (triangle, corner), a.lerp(b, along), part)?;
@@ -83,7 +83,10 @@ fn side(shore: &Shore, cells: &Cells, (triangle, corner): (u32, u8), at: Vec2, p
     let size = shore.size();
     let origin = (at - 0.5).floor().clamp(Vec2::ZERO, Vec2::splat(size as f32 - 2.0));
     let cell = cells.of(origin.y as usize * size + origin.x as usize, triangle)?;
-    Some(Side { triangle, corner, cell, place: at - 0.5 - origin, part })
+    let place = at - 0.5 - origin;
+    // Texture coordinates may leave the map.
+    let is_on_map = place.min_element() >= -0.5 && place.max_element() <= 1.5;
+    is_on_map.then_some(Side { triangle, corner, cell, place, part })
 }
 
 impl Gap {

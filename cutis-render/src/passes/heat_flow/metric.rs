@@ -55,6 +55,17 @@ pub fn conductivity(object: &Object, uv: Vec2) -> f32 {
     object.material.mean_free_path_scale_at(uv).powi(2)
 }
 
+/// Its mean over the texels of charts.
+pub fn usual_conductivity(object: &Object, atlas: &Atlas) -> f32 {
+    if object.material.mean_free_path_scale.texture.is_none() {
+        return conductivity(object, Vec2::ZERO);
+    }
+    let of = |i: usize| atlas.uv_under(object, i).map(|uv| (f64::from(conductivity(object, uv)), 1.0));
+    let add = |a: (f64, f64), b: (f64, f64)| (a.0 + b.0, a.1 + b.1);
+    let (sum, count) = (0..atlas.surface.len()).into_par_iter().filter_map(of).reduce(|| (0.0, 0.0), add);
+    if count > 0.0 { (sum / count) as f32 } else { 1.0 }
+}
+
 /// The metric under every texel that a chart covers, and how well heat flows there; nothing elsewhere.
 pub fn metrics_of_texels(object: &Object, atlas: &Atlas, of_triangles: &[Metric]) -> Vec<Metric> {
     let even = object.material.mean_free_path_scale.texture.is_none();

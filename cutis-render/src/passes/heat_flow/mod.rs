@@ -30,7 +30,7 @@ use coarse::{ADDED_TEXEL2, Halving};
 use cutis_scene::Object;
 use exchange::{Exchange, Layout};
 use glam::Vec4;
-use metric::{metrics, metrics_of_texels};
+use metric::{metrics, metrics_of_texels, usual_conductivity};
 pub use row::Light;
 use row::flown;
 use shore::{Read, Shore};
@@ -42,6 +42,9 @@ const COARSE_DEVIATION_TEXELS: f32 = 4.0;
 const MIN_SIZE: usize = 128;
 /// Mean variance that the bilinear read of a coarse map adds, texel².
 const BILINEAR_TEXEL2: f32 = 1.0 / 6.0;
+
+/// Squares of the object's extent up to which variances count.
+const MOST_EXTENTS2: f32 = 10.0;
 
 /// Heat flow on the atlas of one object, for the variances of one kernel.
 #[derive(Debug, Clone)]
@@ -71,6 +74,9 @@ impl HeatFlow {
     pub fn new(object: &Object, atlas: &Atlas, stretch_mm: &[glam::Vec2], variances_mm2: &[f32]) -> Self {
         let mut texel_mm = median_texel_mm(&atlas.charts, stretch_mm);
         let narrowest = object.material.least_mean_free_path_scale();
+        let usual = usual_conductivity(object, atlas);
+        // Beyond that light is even, but for less than 16 bits tell.
+        let widest_mm2 = MOST_EXTENTS2 * extent_mm2(object) / usual;
         let mut levels: Vec<Level> = Vec::new();
         let mut left = variances_mm2;
         let (mut atlas, mut fine, mut added_texel2) = (atlas.clone(), None::<Atlas>, 0.0);
@@ -78,11 +84,13 @@ impl HeatFlow {
             let halves = atlas.size.is_multiple_of(2) && atlas.size / 2 >= MIN_SIZE;
             let wide = |v: &f32| halves && v.sqrt() * narrowest >= COARSE_DEVIATION_TEXELS * 2.0 * texel_mm;
             let here = left.iter().position(wide).unwrap_or(left.len());
-            let times_mm2: Vec<f32> =
-                left[..here].iter().map(|v| 0.5 * (v - added_texel2 * texel_mm * texel_mm)).collect();
+            // What halving and reading add is as wide everywhere, whatever flows.
+            let added_mm2 = added_texel2 * texel_mm * texel_mm / usual;
+            let time_mm2 = |v: &f32| 0.5 * (v.min(widest_mm2) - added_mm2).max(0.0);
+            let times_mm2: Vec<f32> = left[..here].iter().map(time_mm2).collect();
             let finer = levels.last().zip(fine.as_ref());
             let finer = finer.map(|(level, atlas)| (atlas, level.exchange.areas_mm2.as_slice()));
-            levels.push(Level::new(object, &atlas, finer, texel_mm, &times_mm2));
+            levels.push(Level::new(object, &atlas, finer, (texel_mm, usual), &times_mm2));
             left = &left[here..];
             if left.is_empty() {
                 return Self { levels };
@@ -127,7 +135,10 @@ impl HeatFlow {
                 let back = level.flown_back(time, map);
                 own.iter_mut().zip(back).for_each(|(own, back)| *own = *own + back);
             }
-            sum = Some(level.halving.as_ref().map_or(own.clone(), |halving| halving.transposed(&own)));
+            sum = Some(match &level.halving {
+                Some(halving) => halving.transposed(&own),
+                None => own,
+            });
         }
         sum.unwrap_or_default()
     }
@@ -138,7 +149,7 @@ impl Level {
         object: &Object,
         atlas: &Atlas,
         finer: Option<(&Atlas, &[f32])>,
-        texel_mm: f32,
+        (texel_mm, usual): (f32, f32),
         times_mm2: &[f32],
     ) -> Self {
         let shore = Shore::new(object, atlas);
@@ -149,7 +160,11 @@ impl Level {
         let areas_mm2 = halving.as_ref().map(|halving| halving.areas_mm2.as_slice());
         let exchange = Exchange::new(object, &layout, (&metrics, &of_texels), areas_mm2, texel_mm);
         let of = |&time: &f32| {
-            coefficients(f64::from(time), f64::from(exchange.fastest_rate), f64::from(texel_mm))
+            coefficients(
+                f64::from(time),
+                f64::from(exchange.fastest_rate),
+                f64::from(texel_mm / usual.sqrt()),
+            )
         };
         let times = times_mm2.iter().map(of).collect();
         Self { charts: Arc::clone(&atlas.charts), exchange, padding: layout.padding, halving, times }
@@ -182,25 +197,28 @@ impl Level {
 }
 
 impl DiffusionOperator for HeatFlow {
-    fn diffuse(
-        &self,
-        charts: Arc<ChartMap>,
-        fields: Fields,
-        variances_mm2: &[f32],
-        progress: &dyn Progress,
-    ) -> Diffused {
-        progress.begin("heat flow", variances_mm2.len() as u64);
+    fn diffuse(&self, charts: Arc<ChartMap>, fields: Fields, _: &[f32], progress: &dyn Progress) -> Diffused {
+        progress.begin("heat flow", fields.layers.len() as u64);
         let level = |charts: &Arc<ChartMap>, layers| diffusion::Level { charts: Arc::clone(charts), layers };
         let mut levels = vec![level(&charts, Arc::clone(&fields.layers))];
         // By layer, then by time; levels are the other way round.
-        let mut by_layer: Vec<_> = fields.layers.iter().map(|layer| self.flow(layer).into_iter()).collect();
+        let flow = |layer: &Vec<Vec4>| {
+            let maps = self.flow(layer);
+            progress.advance(1);
+            maps.into_iter()
+        };
+        let mut by_layer: Vec<_> = fields.layers.iter().map(flow).collect();
         for own in &self.levels {
             for _ in &own.times {
                 let layers: Vec<Vec<Vec4>> = by_layer.iter_mut().filter_map(Iterator::next).collect();
                 levels.push(level(&own.charts, Arc::new(layers)));
-                progress.advance(1);
             }
         }
         Diffused { levels }
     }
+}
+
+/// Squared diagonal of the box around an object, mm².
+fn extent_mm2(object: &Object) -> f32 {
+    object.mesh.bounds_mm().map_or(0.0, |[lo, hi]| (hi - lo).length_squared())
 }

@@ -43,7 +43,7 @@ fn along_edge(object: &Object, shore: &Shore, triangle: u32, corner: u8) -> Vec<
         return Vec::new();
     }
     let ([a, b], [d, c]) = (ground.edge(triangle, corner), ground.edge(other, there));
-    let count = (PLACES_PER_TEXEL * (b - a).length().max((d - c).length())).ceil().max(1.0) as usize;
+    let count = shore.places_along((a, b), (c, d), PLACES_PER_TEXEL);
     let chart = |triangle: u32| object.charts.of_triangle[triangle as usize];
     let place = |i: usize| {
         let along = (i as f32 + 0.5) / count as f32;

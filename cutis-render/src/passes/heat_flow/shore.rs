@@ -107,8 +107,17 @@ impl<'a> Shore<'a> {
             .collect()
     }
 
-    /// Texels of a chart, with those around it, in a bilinear read at a place.
+    /// Number of places along a seam, so many for each texel of the longer side. No seam on the map is longer than once around it.
+    pub fn places_along(&self, (a, b): (Vec2, Vec2), (c, d): (Vec2, Vec2), per_texel: f32) -> usize {
+        let texels = (b - a).length().max((d - c).length()).min(4.0 * self.size() as f32);
+        (per_texel * texels).ceil().max(1.0) as usize
+    }
+
+    /// Texels of a chart, with those around it, in a bilinear read at a place; none beside the map.
     pub fn seen_at(&self, place: Vec2, chart: u32) -> Vec<(u32, f32)> {
+        if place.min_element() < 0.0 || place.max_element() > self.size() as f32 {
+            return Vec::new();
+        }
         let around = self.atlas.charts.around(place / self.size() as f32);
         let seen = around.iter().filter(|(texel, _)| self.atlas.charts.chart[*texel] == chart);
         let sum: f32 = seen.clone().map(|(_, weight)| weight).sum();
@@ -138,6 +147,11 @@ impl<'a> Shore<'a> {
         // Beside along u, along v, across.
         let in_sight = |k: usize| [k, k ^ 1, k ^ 2, k ^ 3].into_iter().find_map(|k| seen[k].clone());
         Some([in_sight(0)?, in_sight(1)?, in_sight(2)?, in_sight(3)?])
+    }
+
+    /// The chart of a texel.
+    pub fn chart(&self, texel: usize) -> u32 {
+        self.atlas.charts.chart[texel]
     }
 
     /// Whether a way has crossed a seam to much larger texels, which tell less of the place than those on this side.

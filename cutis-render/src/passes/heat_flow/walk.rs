@@ -35,9 +35,15 @@ impl<'a> Ground<'a> {
     /// Of an object with a texture of `size` texels.
     pub fn new(object: &'a Object, size: usize) -> Self {
         let mut across = vec![[None; 3]; object.mesh.triangles.len()];
+        let ends = |triangle: u32, corner: u8| {
+            let points = object.mesh.triangles[triangle as usize].map(|v| object.point_of_vertex[v as usize]);
+            [points[usize::from(corner)], points[(usize::from(corner) + 1) % 3]]
+        };
         for uses in edges(&object.mesh, &object.point_of_vertex).values() {
-            // Where more than two triangles meet nobody knows which way is straight on.
-            if let [(t, i), (u, j)] = uses[..] {
+            // Where more than two triangles meet nobody knows which way is straight on, nor where one of both is inside out.
+            if let [(t, i), (u, j)] = uses[..]
+                && ends(t, i) == [ends(u, j)[1], ends(u, j)[0]]
+            {
                 across[t as usize][usize::from(i)] = Some((u, j));
                 across[u as usize][usize::from(j)] = Some((t, i));
             }

@@ -5,6 +5,7 @@ mod common;
 
 use common::{head_in_the_studio, read, renderer};
 use cutis_gpu::GpuRenderer;
+use cutis_gpu::cost::by_pass;
 use cutis_gpu::map::half_bytes;
 use cutis_gpu::passes::heat_flow::actions;
 use cutis_gpu::passes::levels::Levels;
@@ -12,6 +13,7 @@ use cutis_gpu::scene::charts::ChartPyramid;
 use cutis_render::passes::atlas::{Atlas, NO_CHART};
 use cutis_render::passes::heat_flow::HeatFlow;
 use cutis_render::passes::stretch::stretch_mm_per_texel;
+use cutis_render::{Diffusion, Settings, Silent};
 use cutis_scene::Object;
 use glam::Vec4;
 
@@ -118,4 +120,17 @@ fn both_machines_halve_light_alike() {
     let [mean, worst] = apart(&charts, &found[1], &exact[1]);
     eprintln!("mean {mean}, worst {worst}");
     assert!(mean < 0.001 && worst < 0.005, "{mean} {worst}");
+}
+
+/// What a frame's heat flow moves through memory, at 1 TB/s, on maps of 1024²; what stages read twice or leave out is not known.
+#[test]
+fn heat_flow_moves_no_more_than_it_did() {
+    let Some(renderer) = renderer("heat_flow_moves_no_more_than_it_did") else { return };
+    let settings = Settings { diffusion: Diffusion::HeatFlow, irradiance_size: 1024, ..Settings::default() };
+    let ready = renderer.scene(&head_in_the_studio(), &settings, &Silent).expect("is uploaded");
+    let all = by_pass(&ready.costs());
+    let flow = all.iter().find(|cost| cost.pass == "heat flow").expect("is part of a frame");
+    let ms = flow.milliseconds(1000.0);
+    eprintln!("{ms:.2} ms, {:.2} GB", (flow.read_bytes + flow.written_bytes) as f64 * 1e-9);
+    assert!(ms < 20.0, "{ms} ms");
 }

@@ -380,7 +380,6 @@ fn no_input_makes_it_explode() {
         let flow = HeatFlow::new(&object, &atlas, &stretch_mm_per_texel(&object, &atlas), &variances_mm2);
         let light: Vec<f64> = (0..size * size).map(|i| f64::from(noise(i / 7, 5).round())).collect();
         let maps = flow.flow(&light);
-        let most = maps.iter().flatten().fold(0.0f64, |most, light| most.max(light.abs()));
         let sum = |map: &[f64], areas_mm2: &[f32], power: i32| -> f64 {
             map.iter().zip(areas_mm2).map(|(light, &area)| light.powi(power) * f64::from(area)).sum()
         };
@@ -390,6 +389,10 @@ fn no_input_makes_it_explode() {
         let left: Vec<f64> = own.map(|map| squares(map) / squares(&light)).collect();
         let levels =
             flow.levels.iter().flat_map(|level| level.times.iter().map(|_| &level.exchange.areas_mm2));
+        // The padding around charts may hold more: it only shows in part.
+        let lit = maps.iter().zip(levels.clone()).flat_map(|(map, areas)| map.iter().zip(areas));
+        let most =
+            lit.filter(|(_, area)| **area > 0.0).fold(0.0f64, |most, (light, _)| most.max(light.abs()));
         let energies = maps.iter().zip(levels).map(|(map, areas_mm2)| sum(map, areas_mm2, 1));
         let before = sum(&light, areas_mm2, 1);
         let change = energies.map(|energy| (energy / before - 1.0).abs()).fold(0.0, f64::max);
@@ -400,7 +403,7 @@ fn no_input_makes_it_explode() {
             left.is_sorted_by(|a, b| a >= b) && left.iter().all(|left| *left < 1.0),
             "seed {seed}: {left:?}"
         );
-        assert!(most < 10.0, "seed {seed}: {most}");
+        assert!(most < 2.5, "seed {seed}: {most}");
         // Torn to pieces of a texel, charts have no place on coarse maps, and their light none to go.
         let allowed = if torn > 0.01 { 0.2 } else { 1e-3 };
         assert!(change < allowed, "seed {seed}: {change}");

@@ -340,7 +340,8 @@ fn odd_meshes_are_lit_where_they_can_be() {
     let mut object = plane(in_four);
     object.mesh.triangles[40].swap(1, 2);
     let base = object.mesh.positions_mm.len() as u32;
-    let island = [[0.0, 0.0], [3.4, 0.0], [0.0, 3.4]].map(|uv| (Vec2::from_array(uv) + 2.0) / 256.0);
+    // Between the centres of texels of twice the size.
+    let island = [[1.1, 1.1], [2.9, 1.1], [1.1, 8.0]].map(|uv| Vec2::from_array(uv) / 256.0);
     let far = [Vec2::splat(-9000.0), Vec2::new(9000.0, -9000.0), Vec2::new(0.0, -9000.0)];
     for (k, uvs) in [island, far].into_iter().enumerate() {
         for (i, uv) in uvs.into_iter().enumerate() {

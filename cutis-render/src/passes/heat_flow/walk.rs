@@ -177,3 +177,30 @@ impl<'a> Ground<'a> {
         turned.is_finite().then_some((place, turned))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cutis_scene::{Material, Mesh};
+
+    fn two_triangles(second: [u32; 3]) -> Object {
+        let corners = [Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y];
+        let mesh = Mesh {
+            positions_mm: corners.iter().map(|c| c.extend(0.0)).collect(),
+            uvs: corners.iter().map(|c| 0.25 + 0.5 * *c).collect(),
+            triangles: vec![[0, 1, 2], second],
+            ..Mesh::default()
+        };
+        Object::new("two", mesh, Material::default())
+    }
+
+    /// Straight on into the next triangle, unless that one is inside out.
+    #[test]
+    fn ways_end_where_a_triangle_is_inside_out() {
+        for (second, crosses) in [([0, 2, 3], true), ([0, 3, 2], false)] {
+            let object = two_triangles(second);
+            let way = Ground::new(&object, 64).walk(0, Vec2::new(36.0, 30.0), Vec2::new(-6.0, 6.0));
+            assert_eq!((way.triangle == 1, way.at_border), (crosses, !crosses), "{way:?}");
+        }
+    }
+}

@@ -132,5 +132,5 @@ fn heat_flow_moves_no_more_than_it_did() {
     let flow = all.iter().find(|cost| cost.pass == "heat flow").expect("is part of a frame");
     let ms = flow.milliseconds(1000.0);
     eprintln!("{ms:.2} ms, {:.2} GB", (flow.read_bytes + flow.written_bytes) as f64 * 1e-9);
-    assert!(ms < 20.0, "{ms} ms");
+    assert!(ms < 8.5, "{ms} ms");
 }

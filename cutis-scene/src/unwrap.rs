@@ -29,9 +29,8 @@ pub struct Unwrapped {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Gives a mesh texture coordinates of its own, none of which overlap; what it had is lost. Atlases are looked for
-/// and kept in `folder`; `tell` is told how far the work is, in
-/// words, if it takes long enough to wonder.
+/// Gives a mesh texture coordinates of its own, none of which overlap; what it had is lost. Atlases are looked for and kept in
+/// `folder`; `tell` is told how far the work is, in words, if it takes long enough to wonder.
 ///
 /// # Errors
 /// In words, if the mesh cannot be cut into charts.

@@ -91,6 +91,8 @@ fn scene_files() {
         ("f0", scene("[material]\nf0 = inf"), "must be a finite number"),
         ("huge", scene("[material]\nf0 = 1e300"), "must be a finite number"),
         ("thin", scene("[material]\nthickness_scale = -0.5"), "must be 0 to 1000000, got -0.5"),
+        ("long", scene("[material]\nmean_free_path_scale = 20"), "must be 0.1 to 10, got 20"),
+        ("short", scene("[material]\nmean_free_path_scale = 0"), "must be 0.1 to 10, got 0"),
         ("thick", scene("[material]\nthickness_scale = 1e7"), "must be 0 to 1000000, got 10000000"),
         ("endless", scene("[material]\nthickness_scale = inf"), "must be a finite number"),
         ("nan", scene("[material]\nthickness_scale = nan"), "must be a finite number"),

@@ -17,8 +17,7 @@ pub fn warnings(scene: &Scene, technique: TechniqueName, diffusion: Diffusion) -
         let second = object.material.mixed_with.as_ref().map(|second| &second.scattering);
         std::iter::once(&object.material.scattering).chain(second).flat_map(beyond_the_model)
     });
-    let even = scene.objects.iter().filter_map(move |object| paths_left_out(object, technique, diffusion));
-    open.chain(invalid).chain(left_out(scene, technique)).chain(even).collect()
+    open.chain(invalid).chain(left_out(scene, technique, diffusion)).collect()
 }
 
 /// What diffusion is not good for.
@@ -40,9 +39,19 @@ fn beyond_the_model(scattering: &Scattering) -> Vec<String> {
     }
 }
 
-/// Says so where a material has what a technique does not know.
-pub fn left_out(scene: &Scene, technique: TechniqueName) -> impl Iterator<Item = String> {
-    let of = move |object: &Object| [layers_left_out(object, technique), mixture_left_out(object, technique)];
+/// Says so where a material has what a technique, or its diffusion, does not know.
+pub fn left_out(
+    scene: &Scene,
+    technique: TechniqueName,
+    diffusion: Diffusion,
+) -> impl Iterator<Item = String> {
+    let of = move |object: &Object| {
+        [
+            layers_left_out(object, technique),
+            mixture_left_out(object, technique),
+            paths_left_out(object, technique, diffusion),
+        ]
+    };
     scene.objects.iter().flat_map(of).flatten()
 }
 
@@ -76,4 +85,32 @@ fn paths_left_out(object: &Object, technique: TechniqueName, diffusion: Diffusio
              drawn as the medium has it"
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cutis_scene::head::HeadDetail;
+    use cutis_scene::{ScalarMap, studio};
+
+    /// What only heat flow knows is told by everybody else, and by nobody where it is as it always was.
+    #[test]
+    fn a_scaled_mean_free_path_is_told_where_it_is_not_drawn() {
+        let mut scene = studio::head_in_the_studio(HeadDetail { triangles: 1000, map_size: 0 });
+        let told = |scene: &Scene, technique, diffusion| {
+            warnings(scene, technique, diffusion)
+                .iter()
+                .any(|warning| warning.contains("the mean free path of"))
+        };
+        let flows = (TechniqueName::TextureSpace, Diffusion::HeatFlow);
+        let others = [
+            (TechniqueName::TextureSpace, Diffusion::Separable),
+            (TechniqueName::TextureBlur, Diffusion::HeatFlow),
+            (TechniqueName::Truth, Diffusion::HeatFlow),
+        ];
+        assert!(others.iter().all(|&(technique, diffusion)| !told(&scene, technique, diffusion)));
+        scene.objects[0].material.mean_free_path_scale = ScalarMap::constant(2.0);
+        assert!(others.iter().all(|&(technique, diffusion)| told(&scene, technique, diffusion)));
+        assert!(!told(&scene, flows.0, flows.1));
+    }
 }

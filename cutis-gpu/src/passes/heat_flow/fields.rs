@@ -60,9 +60,11 @@ impl Fields {
         let exchange = &level.exchange;
         let size = exchange.size as u32;
         let taken = taken(level);
-        let speed = 2.0 / exchange.fastest_rate;
-        let paces =
-            exchange.per_area.iter().map(|per_area| f16::from_f32((per_area * speed).min(FASTEST_PACE)));
+        let speed = 2.0 / exchange.fastest_rate_per_mm2;
+        let paces = exchange
+            .inverse_areas_per_mm2
+            .iter()
+            .map(|per_area| f16::from_f32((per_area * speed).min(FASTEST_PACE)));
         let bytes: Vec<u8> = paces.flat_map(|pace| pace.to_bits().to_le_bytes()).collect();
         let entries =
             level.padding.iter().flat_map(|(texel, read)| read.iter().map(move |&(t, w)| (*texel, t, w)));
@@ -85,7 +87,7 @@ impl Fields {
 fn taken(level: &Level) -> Vec<[Vec4; 2]> {
     let exchange = &level.exchange;
     let size = exchange.size;
-    let speed = 2.0 / exchange.fastest_rate;
+    let speed = 2.0 / exchange.fastest_rate_per_mm2;
     // Inner squares link no texel along the edges of the map.
     let of = |i: usize| {
         if i <= size || i + size + 1 >= exchange.links.len() {
@@ -96,7 +98,7 @@ fn taken(level: &Level) -> Vec<[Vec4; 2]> {
         let east = Vec4::new(e, ne, n, nw);
         let west =
             Vec4::new(links(i - 1)[0], links(i - size - 1)[2], links(i - size)[1], links(i - size + 1)[3]);
-        [east, west].map(|links| links * exchange.per_area[i] * speed)
+        [east, west].map(|links| links * exchange.inverse_areas_per_mm2[i] * speed)
     };
     (0..exchange.links.len()).map(of).collect()
 }
@@ -104,11 +106,13 @@ fn taken(level: &Level) -> Vec<[Vec4; 2]> {
 /// The same from further away.
 fn taken_further(level: &Level) -> Rows {
     let exchange = &level.exchange;
-    let speed = 2.0 / exchange.fastest_rate;
+    let speed = 2.0 / exchange.fastest_rate_per_mm2;
     let mut rows = exchange.rows.clone();
     for (&texel, ends) in rows.texels.iter().zip(exchange.rows.starts.windows(2)) {
         let links = &mut rows.links[ends[0] as usize..ends[1] as usize];
-        links.iter_mut().for_each(|(_, link)| *link *= exchange.per_area[texel as usize] * speed);
+        links
+            .iter_mut()
+            .for_each(|(_, link)| *link *= exchange.inverse_areas_per_mm2[texel as usize] * speed);
     }
     rows
 }

@@ -48,11 +48,11 @@ pub struct Exchange {
     /// Area that each texel stands for, mm²; 0 where there is no surface.
     pub areas_mm2: Vec<f32>,
     /// Its inverse, 1/mm²; 0 where there is no surface.
-    pub per_area: Vec<f32>,
+    pub inverse_areas_per_mm2: Vec<f32>,
     /// Where there is surface, row by row.
     pub runs: Vec<Vec<Range<usize>>>,
     /// Every wave of light falls more slowly, 1/mm².
-    pub fastest_rate: f32,
+    pub fastest_rate_per_mm2: f32,
 }
 
 impl Layout {
@@ -64,7 +64,7 @@ impl Layout {
             .map(|i| i % size + 1 < size && i / size + 1 < size && shore.is_whole(i))
             .collect();
         let (cells, padding) = rayon::join(|| Cells::new(object, shore), || padding(object, shore));
-        let gaps = gaps(object, shore, &cells);
+        let gaps = gaps(shore, &cells);
         let cells = cells.all;
         Self { size, whole, cells, gaps, padding }
     }
@@ -112,14 +112,22 @@ impl Exchange {
         let least_mm2 = LEAST_AREA * texel_mm * texel_mm;
         let areas_mm2: Vec<f32> =
             areas_mm2.into_iter().map(|area| if area > least_mm2 { area } else { 0.0 }).collect();
-        let per_area = areas_mm2.iter().map(|&area| if area > 0.0 { area.recip() } else { 0.0 }).collect();
+        let inverse_areas_per_mm2 =
+            areas_mm2.iter().map(|&area| if area > 0.0 { area.recip() } else { 0.0 }).collect();
         let runs = areas_mm2.par_chunks(size).map(runs_of).collect();
-        let mut exchange =
-            Self { size, links, rows: Rows::default(), areas_mm2, runs, per_area, fastest_rate: 0.0 };
+        let mut exchange = Self {
+            size,
+            links,
+            rows: Rows::default(),
+            areas_mm2,
+            runs,
+            inverse_areas_per_mm2,
+            fastest_rate_per_mm2: 0.0,
+        };
         let best = layout.cells.iter().map(Cell::conductivity).fold(0.0, f32::max);
         exchange.rows = rows(&elements, &vec![1.0; size * size]);
         exchange.rows = rows(&elements, &exchange.pace(FASTEST * best / (texel_mm * texel_mm)));
-        exchange.fastest_rate = exchange.bound_of_rates();
+        exchange.fastest_rate_per_mm2 = exchange.bound_of_rates();
         exchange
     }
 
@@ -157,7 +165,10 @@ impl Exchange {
         for (texel, links) in self.rows.iter() {
             given[texel] += links.iter().map(|(_, link)| link.abs()).sum::<f32>();
         }
-        let rates = given.par_iter().zip(&self.per_area).map(|(given, per_area)| 2.0 * given * per_area);
+        let rates = given
+            .par_iter()
+            .zip(&self.inverse_areas_per_mm2)
+            .map(|(given, inverse_areas_per_mm2)| 2.0 * given * inverse_areas_per_mm2);
         rates.reduce(|| f32::MIN_POSITIVE, f32::max)
     }
 }

@@ -7,6 +7,7 @@
 
 use super::cells::{Cell, Cells};
 use super::metric::{Metric, derivatives_mm_per_texel};
+use super::seam_edges::{SeamEdge, seam_edges};
 use super::shore::Shore;
 use cutis_scene::Object;
 use glam::{DMat3, DVec3, Mat4, Vec2, Vec3, Vec4};
@@ -54,29 +55,19 @@ pub struct Jump {
 }
 
 /// Places along all seams.
-pub fn gaps(object: &Object, shore: &Shore, cells: &Cells) -> Vec<Gap> {
-    (0..object.mesh.triangles.len() as u32)
-        .into_par_iter()
-        .flat_map_iter(|triangle| (0..3u8).map(move |corner| (triangle, corner)))
-        .flat_map_iter(|(triangle, corner)| along_edge(shore, cells, triangle, corner))
-        .collect()
+pub fn gaps(shore: &Shore, cells: &Cells) -> Vec<Gap> {
+    seam_edges(&shore.ground).par_iter().flat_map_iter(|edge| along_edge(shore, cells, edge)).collect()
 }
 
-fn along_edge(shore: &Shore, cells: &Cells, triangle: u32, corner: u8) -> Vec<Gap> {
-    let Some((other, there)) = shore.ground.across(triangle, corner) else { return Vec::new() };
-    // Every seam is met twice.
-    if shore.ground.goes_on(triangle, corner) || (other, there) < (triangle, corner) {
-        return Vec::new();
-    }
-    let ([a, b], [d, c]) = (shore.ground.edge(triangle, corner), shore.ground.edge(other, there));
-    let count = shore.places_along((a, b), (c, d), PLACES_PER_TEXEL);
-    let gap = |i: usize| {
-        let (along, part) = ((i as f32 + 0.5) / count as f32, 1.0 / count as f32);
-        let here = side(shore, cells, (triangle, corner), a.lerp(b, along), part)?;
-        let beyond = side(shore, cells, (other, there), c.lerp(d, along), part)?;
+fn along_edge(shore: &Shore, cells: &Cells, edge: &SeamEdge) -> Vec<Gap> {
+    let count = edge.place_count(PLACES_PER_TEXEL, shore.size());
+    let part = 1.0 / count as f32;
+    let gap = |[here, beyond]: [Vec2; 2]| {
+        let here = side(shore, cells, edge.sides[0], here, part)?;
+        let beyond = side(shore, cells, edge.sides[1], beyond, part)?;
         Some(Gap { sides: [here, beyond] })
     };
-    (0..count).filter_map(gap).collect()
+    edge.places(count).filter_map(gap).collect()
 }
 
 fn side(shore: &Shore, cells: &Cells, (triangle, corner): (u32, u8), at: Vec2, part: f32) -> Option<Side> {

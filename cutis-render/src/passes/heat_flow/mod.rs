@@ -18,6 +18,7 @@ mod metric;
 mod padding;
 mod row;
 pub mod rows;
+mod seam_edges;
 pub mod shore;
 mod walk;
 
@@ -42,7 +43,6 @@ const COARSE_DEVIATION_TEXELS: f32 = 4.0;
 const MIN_SIZE: usize = 128;
 /// Mean variance that the bilinear read of a coarse map adds, texel².
 const BILINEAR_TEXEL2: f32 = 1.0 / 6.0;
-
 /// Squares of the object's extent up to which variances count.
 const MOST_EXTENTS2: f32 = 10.0;
 
@@ -162,7 +162,7 @@ impl Level {
         let of = |&time: &f32| {
             coefficients(
                 f64::from(time),
-                f64::from(exchange.fastest_rate),
+                f64::from(exchange.fastest_rate_per_mm2),
                 f64::from(texel_mm / usual.sqrt()),
             )
         };
@@ -187,7 +187,7 @@ impl Level {
         for ((_, read), light) in self.padding.iter().zip(taken) {
             read.iter().for_each(|&(t, w)| map[t as usize] = map[t as usize] + light.times(w));
         }
-        let per_area = &self.exchange.per_area;
+        let per_area = &self.exchange.inverse_areas_per_mm2;
         let counts = |&per_area: &f32| if per_area > 0.0 { per_area } else { 1.0 };
         map.iter_mut().zip(per_area).for_each(|(light, p)| *light = light.times(counts(p)));
         let mut back = flown(&self.exchange, &[time.to_vec()], &map).swap_remove(0);
@@ -197,7 +197,15 @@ impl Level {
 }
 
 impl DiffusionOperator for HeatFlow {
-    fn diffuse(&self, charts: Arc<ChartMap>, fields: Fields, _: &[f32], progress: &dyn Progress) -> Diffused {
+    fn diffuse(
+        &self,
+        charts: Arc<ChartMap>,
+        fields: Fields,
+        variances_mm2: &[f32],
+        progress: &dyn Progress,
+    ) -> Diffused {
+        let times = self.levels.iter().map(|level| level.times.len()).sum::<usize>();
+        assert_eq!(times, variances_mm2.len(), "the variances are those that the flow was made for");
         progress.begin("heat flow", fields.layers.len() as u64);
         let level = |charts: &Arc<ChartMap>, layers| diffusion::Level { charts: Arc::clone(charts), layers };
         let mut levels = vec![level(&charts, Arc::clone(&fields.layers))];

@@ -4,8 +4,10 @@
 //! the padding, which no heat flows through, are moved until they do (Kaczmarz 1937, place by place along the seams). Both
 //! sides give way alike: by their texels' size, finer sides would be truer near coarse ones, and seams show three times as much.
 
+use super::seam_edges::{SeamEdge, seam_edges};
 use super::shore::{Read, Shore};
 use cutis_scene::Object;
+use glam::Vec2;
 use std::collections::HashMap;
 
 /// Rounds over all places.
@@ -23,10 +25,8 @@ type Seen = Vec<(u32, f32)>;
 /// Texels of the padding and what they read.
 pub fn padding(object: &Object, shore: &Shore) -> Vec<(u32, Read)> {
     let mut reads: HashMap<u32, Read> = shore.padding().into_iter().collect();
-    let places: Vec<[Seen; 2]> = (0..object.mesh.triangles.len() as u32)
-        .flat_map(|triangle| (0..3u8).map(move |corner| (triangle, corner)))
-        .flat_map(|(triangle, corner)| along_edge(object, shore, triangle, corner))
-        .collect();
+    let places: Vec<[Seen; 2]> =
+        seam_edges(&shore.ground).iter().flat_map(|edge| along_edge(object, shore, edge)).collect();
     for _ in 0..ROUNDS {
         places.iter().for_each(|sides| meet(&mut reads, sides));
     }
@@ -36,20 +36,11 @@ pub fn padding(object: &Object, shore: &Shore) -> Vec<(u32, Read)> {
 }
 
 /// Places along a seam from both sides.
-fn along_edge(object: &Object, shore: &Shore, triangle: u32, corner: u8) -> Vec<[Seen; 2]> {
-    let ground = &shore.ground;
-    let Some((other, there)) = ground.across(triangle, corner) else { return Vec::new() };
-    if ground.goes_on(triangle, corner) || (other, there) < (triangle, corner) {
-        return Vec::new();
-    }
-    let ([a, b], [d, c]) = (ground.edge(triangle, corner), ground.edge(other, there));
-    let count = shore.places_along((a, b), (c, d), PLACES_PER_TEXEL);
-    let chart = |triangle: u32| object.charts.of_triangle[triangle as usize];
-    let place = |i: usize| {
-        let along = (i as f32 + 0.5) / count as f32;
-        [shore.seen_at(a.lerp(b, along), chart(triangle)), shore.seen_at(c.lerp(d, along), chart(other))]
-    };
-    (0..count).map(place).filter(|sides| sides.iter().all(|side| !side.is_empty())).collect()
+fn along_edge(object: &Object, shore: &Shore, edge: &SeamEdge) -> Vec<[Seen; 2]> {
+    let charts = edge.sides.map(|(triangle, _)| object.charts.of_triangle[triangle as usize]);
+    let seen = |[here, beyond]: [Vec2; 2]| [shore.seen_at(here, charts[0]), shore.seen_at(beyond, charts[1])];
+    let places = edge.places(edge.place_count(PLACES_PER_TEXEL, shore.size()));
+    places.map(seen).filter(|sides| sides.iter().all(|side| !side.is_empty())).collect()
 }
 
 /// Moves the padding so that one place looks the same from both sides.

@@ -64,7 +64,7 @@ fn step<L: Light>(
     parts: &[f32],
 ) {
     let size = exchange.size;
-    let speed = 2.0 / exchange.fastest_rate;
+    let speed = 2.0 / exchange.fastest_rate_per_mm2;
     let mut rows: Vec<Row<L>> =
         before.chunks_mut(size).map(|before| Row { before, sums: Vec::with_capacity(parts.len()) }).collect();
     for (sum, &part) in sums.iter_mut().zip(parts).filter(|(_, part)| begins || **part != 0.0) {
@@ -85,7 +85,7 @@ fn step<L: Light>(
                 // Inner squares link no texel along the edges of the map.
                 let inner = y > 0 && y + 1 < size && x > 0 && x + 1 < size;
                 let flow = if inner { flow(exchange, now, i) } else { L::default() };
-                let moved = here[x] + flow.times(exchange.per_area[i]).times(speed);
+                let moved = here[x] + flow.times(exchange.inverse_areas_per_mm2[i]).times(speed);
                 row[x] = moved.times(factor) - row[x].times(part);
             }
         }
@@ -125,7 +125,7 @@ fn add_rows<L: Light>(exchange: &Exchange, now: &[L], next: &mut [L], speed: f32
         })
         .collect();
     for (&texel, flow) in rows.texels.iter().zip(added) {
-        let flow = flow.times(exchange.per_area[texel as usize]).times(speed).times(factor);
+        let flow = flow.times(exchange.inverse_areas_per_mm2[texel as usize]).times(speed).times(factor);
         next[texel as usize] = next[texel as usize] + flow;
     }
 }

@@ -107,12 +107,6 @@ impl<'a> Shore<'a> {
             .collect()
     }
 
-    /// Number of places along a seam, so many for each texel of the longer side. No seam on the map is longer than once around it.
-    pub fn places_along(&self, (a, b): (Vec2, Vec2), (c, d): (Vec2, Vec2), per_texel: f32) -> usize {
-        let texels = (b - a).length().max((d - c).length()).min(4.0 * self.size() as f32);
-        (per_texel * texels).ceil().max(1.0) as usize
-    }
-
     /// Texels of a chart, with those around it, in a bilinear read at a place; none beside the map.
     pub fn seen_at(&self, place: Vec2, chart: u32) -> Vec<(u32, f32)> {
         if place.min_element() < 0.0 || place.max_element() > self.size() as f32 {

@@ -76,6 +76,11 @@ impl<'a> Ground<'a> {
         self.across[triangle as usize][usize::from(corner)]
     }
 
+    /// Number of triangles.
+    pub fn triangle_count(&self) -> u32 {
+        self.across.len() as u32
+    }
+
     /// The ends, on the texture, of the edge that begins at a corner, texels.
     pub fn edge(&self, triangle: u32, corner: u8) -> [Vec2; 2] {
         let corners = self.corners(triangle);

@@ -56,18 +56,18 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
         passes.push(PassTime { name: "exitance".to_owned(), time: start.elapsed() });
     }
     frame.passes = passes;
-    frame.warnings = warnings(scene);
+    frame.warnings = warnings(scene, settings);
     Ok(frame)
 }
 
 /// What a person should know of a scene that is drawn by this technique.
-fn warnings(scene: &Scene) -> Vec<String> {
+fn warnings(scene: &Scene, settings: &Settings) -> Vec<String> {
     let scaled = scene.objects.iter().filter(|object| object.material.thickness_scale != 1.0);
     let words = scaled.map(|object| {
         let (name, scale) = (&object.name, object.material.thickness_scale);
         format!("the truth takes '{name}' as thick as it is: it does not know the thickness scale of {scale}")
     });
-    words.chain(left_out(scene, TechniqueName::Truth)).collect()
+    words.chain(left_out(scene, TechniqueName::Truth, settings.diffusion)).collect()
 }
 
 /// Takes samples until there are enough, or the noise is low enough.

@@ -6,7 +6,7 @@ use crate::film::Checkpoint;
 use crate::settings::{Aov, AovSpace, Settings};
 use crate::transport::tests::{ball, even_environment, material, scene_of};
 use crate::{Frame, RenderError, Silent};
-use cutis_scene::{Light, NormalMap, NormalSpace, Scene, Texels, Texture};
+use cutis_scene::{Light, NormalMap, NormalSpace, ScalarMap, Scene, Texels, Texture};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -74,6 +74,16 @@ fn a_thickness_scale_is_not_known_and_that_is_told() {
     let scaled = drawn(&scaled, &small(2));
     assert_same_bits(&plain, &scaled);
     assert!(scaled.warnings[0].contains("does not know the thickness scale of 2.5"), "{:?}", scaled.warnings);
+}
+
+#[test]
+fn a_scaled_mean_free_path_is_not_known_and_that_is_told() {
+    let scene = ball_in_light(0.4, 8.0);
+    let mut scaled = scene.clone();
+    scaled.objects[0].material.mean_free_path_scale = ScalarMap::constant(2.0);
+    let (plain, scaled) = (drawn(&scene, &small(2)), drawn(&scaled, &small(2)));
+    assert_same_bits(&plain, &scaled);
+    assert!(scaled.warnings[0].contains("only the diffusion heat-flow"), "{:?}", scaled.warnings);
 }
 
 #[test]

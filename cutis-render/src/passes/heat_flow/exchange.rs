@@ -6,17 +6,18 @@
 use super::cells::{Cell, Cells};
 use super::elements::{elements, rows};
 use super::gaps::{Gap, gaps};
-use super::metric::Metric;
+use super::metric::{Metric, SMALLEST, best_conductivity};
 use super::padding::padding;
 use super::rows::Rows;
-use super::shore::{Read, Shore, corners};
+use super::shore::{Read, Shore};
+use super::squares::Squares;
 use cutis_scene::Object;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// What a texel at the edge of a chart may give, per time, by the area of a usual texel: thin strips would set the pace for all
-/// others.
-const FASTEST: f32 = 6.7;
+/// No wave may fall faster than this by the area of a usual texel: thin strips at the edges of charts would set the pace for all
+/// others. It is what squares of the narrowest texels reach.
+const FASTEST: f32 = 4.0 / (SMALLEST * SMALLEST);
 
 /// Least area of a texel that holds light, by that of a usual one.
 const LEAST_AREA: f32 = 1e-6;
@@ -34,6 +35,8 @@ pub struct Layout {
     pub gaps: Vec<Gap>,
     /// Texels of the padding, and what they hold.
     pub padding: Vec<(u32, Read)>,
+    /// The best that heat flows anywhere, by how it does in the medium itself.
+    pub best_conductivity: f32,
 }
 
 /// All links, for one pose.
@@ -66,7 +69,9 @@ impl Layout {
         let (cells, padding) = rayon::join(|| Cells::new(object, shore), || padding(object, shore));
         let gaps = gaps(shore, &cells);
         let cells = cells.all;
-        Self { size, whole, cells, gaps, padding }
+        let best_conductivity =
+            cells.iter().map(Cell::conductivity).fold(best_conductivity(object, shore.atlas), f32::max);
+        Self { size, whole, cells, gaps, padding, best_conductivity }
     }
 }
 
@@ -80,97 +85,61 @@ impl Exchange {
         texel_mm: f32,
     ) -> Self {
         let size = layout.size;
-        let squares: Vec<Metric> = (0..size * size)
-            .into_par_iter()
-            .map(|i| {
-                if layout.whole[i] { mean(corners(i, size).map(|t| of_texels[t])) } else { Metric::default() }
-            })
-            .collect();
-        let at = |i: usize, back: usize| i.checked_sub(back).map_or(Metric::default(), |i| squares[i]);
-        let links = (0..size * size)
-            .into_par_iter()
-            .map(|i| {
-                let [here, below, left] = [squares[i], at(i, size), at(i, 1)];
-                let along = |a: f32, b: f32| a / 3.0 - b / 6.0;
-                let sum = (here.a.x + here.a.z) / 6.0;
-                let sum_left = (left.a.x + left.a.z) / 6.0;
-                [
-                    along(here.a.x, here.a.z) + along(below.a.x, below.a.z),
-                    along(here.a.z, here.a.x) + along(left.a.z, left.a.x),
-                    sum + 0.5 * here.a.y,
-                    sum_left - 0.5 * left.a.y,
-                ]
-            })
-            .collect();
-        let mut own_mm2: Vec<f32> = (0..size * size)
-            .into_par_iter()
-            .map(|i| [0, 1, size, size + 1].map(|back| at(i, back).area_mm2).iter().sum::<f32>() * 0.25)
-            .collect();
+        let mut squares = Squares::new(size, &layout.whole, of_texels);
+        let mut own_mm2 = squares.areas_mm2();
         let elements = elements(object, layout, metrics, &mut own_mm2);
+        let is_given = areas_mm2.is_some();
         let areas_mm2 = areas_mm2.map_or(own_mm2, <[f32]>::to_vec);
         // What is less is rounding, and its inverse beyond bounds.
         let least_mm2 = LEAST_AREA * texel_mm * texel_mm;
         let areas_mm2: Vec<f32> =
             areas_mm2.into_iter().map(|area| if area > least_mm2 { area } else { 0.0 }).collect();
-        let inverse_areas_per_mm2 =
+        let inverse_areas_per_mm2: Vec<f32> =
             areas_mm2.iter().map(|&area| if area > 0.0 { area.recip() } else { 0.0 }).collect();
         let runs = areas_mm2.par_chunks(size).map(runs_of).collect();
-        let mut exchange = Self {
+        let fastest_rate_per_mm2 = FASTEST * layout.best_conductivity / (texel_mm * texel_mm);
+        if is_given {
+            squares.slow_down(&areas_mm2, fastest_rate_per_mm2);
+        }
+        let strengths = squares.strengths();
+        let all = rows(&elements, &vec![1.0; size * size]);
+        let rows = rows(&elements, &pace(&all, &areas_mm2, &strengths, fastest_rate_per_mm2));
+        let fastest_rate_per_mm2 = bound_of_rates(&rows, &inverse_areas_per_mm2, strengths);
+        Self {
             size,
-            links,
-            rows: Rows::default(),
+            links: squares.links(),
+            rows,
             areas_mm2,
-            runs,
             inverse_areas_per_mm2,
-            fastest_rate_per_mm2: 0.0,
-        };
-        let best = layout.cells.iter().map(Cell::conductivity).fold(0.0, f32::max);
-        exchange.rows = rows(&elements, &vec![1.0; size * size]);
-        exchange.rows = rows(&elements, &exchange.pace(FASTEST * best / (texel_mm * texel_mm)));
-        exchange.fastest_rate_per_mm2 = exchange.bound_of_rates();
-        exchange
-    }
-
-    /// What every texel may keep of its links at the edges, so that it gives at most that part of its light.
-    fn pace(&self, fastest: f32) -> Vec<f32> {
-        let mut part = vec![1.0f32; self.areas_mm2.len()];
-        for (texel, links) in self.rows.iter() {
-            let outer: f32 = links.iter().map(|(_, link)| link.abs()).sum();
-            let most = (fastest * self.areas_mm2[texel] - self.inner_strength(texel)).max(0.0);
-            part[texel] = if outer > most { most / outer } else { 1.0 };
+            runs,
+            fastest_rate_per_mm2,
         }
-        part
     }
+}
 
-    /// Sum of a texel's links to its eight neighbours.
-    fn inner_strength(&self, i: usize) -> f32 {
-        let size = self.size;
-        // Texels along the edges of the map have none.
-        if i <= size || i + size + 1 >= self.links.len() {
-            return 0.0;
-        }
-        let back = [
-            self.links[i - 1][0],
-            self.links[i - size][1],
-            self.links[i - size - 1][2],
-            self.links[i - size + 1][3],
-        ];
-        self.links[i].iter().chain(&back).map(|link| link.abs()).sum()
+/// What every texel may keep of its links at the edges, so that its waves fall no faster than they may: a part of 1.
+fn pace(rows: &Rows, areas_mm2: &[f32], strengths: &[f32], fastest_rate_per_mm2: f32) -> Vec<f32> {
+    let mut part = vec![1.0f32; areas_mm2.len()];
+    for (texel, links) in rows.iter() {
+        let outer = outer_strength(links);
+        let most = (fastest_rate_per_mm2 * areas_mm2[texel] - strengths[texel]).max(0.0);
+        part[texel] = if outer > most { most / outer } else { 1.0 };
     }
+    part
+}
 
-    /// No wave is faster than twice what any texel gives (Gershgorin 1931).
-    fn bound_of_rates(&self) -> f32 {
-        let mut given: Vec<f32> =
-            (0..self.links.len()).into_par_iter().map(|i| self.inner_strength(i)).collect();
-        for (texel, links) in self.rows.iter() {
-            given[texel] += links.iter().map(|(_, link)| link.abs()).sum::<f32>();
-        }
-        let rates = given
-            .par_iter()
-            .zip(&self.inverse_areas_per_mm2)
-            .map(|(given, inverse_areas_per_mm2)| 2.0 * given * inverse_areas_per_mm2);
-        rates.reduce(|| f32::MIN_POSITIVE, f32::max)
-    }
+/// What links to further texels make of a wave at most: twice their sum (Gershgorin 1931).
+fn outer_strength(links: &[(u32, f32)]) -> f32 {
+    2.0 * links.iter().map(|(_, link)| link.abs()).sum::<f32>()
+}
+
+/// No wave falls faster than all that is linked to a texel lets it fall there: with S the sum of the matrices of squares and of
+/// those of edges, uᵀSu is at most the sum of what each makes of u at its own texels.
+fn bound_of_rates(rows: &Rows, inverse_areas_per_mm2: &[f32], mut strengths: Vec<f32>) -> f32 {
+    rows.iter().for_each(|(texel, links)| strengths[texel] += outer_strength(links));
+    let rates =
+        strengths.par_iter().zip(inverse_areas_per_mm2).map(|(strength, per_area)| strength * per_area);
+    rates.reduce(|| f32::MIN_POSITIVE, f32::max)
 }
 
 fn runs_of(areas_mm2: &[f32]) -> Vec<Range<usize>> {
@@ -182,11 +151,4 @@ fn runs_of(areas_mm2: &[f32]) -> Vec<Range<usize>> {
         }
     }
     runs
-}
-
-fn mean(all: [Metric; 4]) -> Metric {
-    let sum = all
-        .iter()
-        .fold(Metric::default(), |sum, m| Metric { a: sum.a + m.a, area_mm2: sum.area_mm2 + m.area_mm2 });
-    Metric { a: sum.a * 0.25, area_mm2: sum.area_mm2 * 0.25 }
 }

@@ -11,9 +11,7 @@ use rayon::prelude::*;
 
 /// Heat crosses texels narrower than this part of the usual one as if they were that wide: slivers would set the pace for all
 /// others. Their areas, and what flows along them, are true.
-const SMALLEST: f32 = 0.63;
-/// Largest cosine between the axes that is believed.
-const MOST_SHEAR: f32 = 0.9;
+pub const SMALLEST: f32 = 0.63;
 
 /// The metric under one texel.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -34,14 +32,35 @@ impl Metric {
     pub fn new([xu, xv]: [Vec3; 2], texel_mm: f32) -> Self {
         let (e, f, g) = (xu.length_squared(), xu.dot(xv), xv.length_squared());
         let area_mm2 = (e * g - f * f).max(0.0).sqrt();
-        let most = area_mm2 / (SMALLEST * texel_mm).powi(2);
         // Without an area nothing can be said, and nothing flows.
         let per_area = if area_mm2 > 0.0 { area_mm2.recip() } else { 0.0 };
-        let (a11, a22) = ((g * per_area).min(most), (e * per_area).min(most));
-        let shear = MOST_SHEAR * (a11 * a22).sqrt();
-        let metric = Self { a: Vec3::new(a11, (-f * per_area).clamp(-shear, shear), a22), area_mm2 };
-        if metric.a.is_finite() && area_mm2.is_finite() { metric } else { Self::default() }
+        let a = at_most(Vec3::new(g, -f, e) * per_area, area_mm2 / (SMALLEST * texel_mm).powi(2));
+        if a.is_finite() && area_mm2.is_finite() { Self { a, area_mm2 } } else { Self::default() }
     }
+
+    /// How strongly it links the four corners of a square at most, by what one of them holds: the largest of the four waves that a
+    /// square knows. Waves along the axes fall by a itself, the one that alternates by a third of its trace.
+    pub fn strength(&self) -> f32 {
+        largest(self.a).max((self.a.x + self.a.z) / 3.0)
+    }
+}
+
+/// The larger eigenvalue of a symmetric matrix, by its entries 11, 12 and 22.
+fn largest(a: Vec3) -> f32 {
+    0.5 * (a.x + a.z) + (0.25 * (a.x - a.z).powi(2) + a.y * a.y).sqrt()
+}
+
+/// The same matrix with eigenvalues of at most `most`.
+fn at_most(a: Vec3, most: f32) -> Vec3 {
+    let (high, trace) = (largest(a), a.x + a.z);
+    let low = trace - high;
+    if high <= most {
+        return a;
+    }
+    // a = low + (high - low) d dᵀ with the direction d of the larger one.
+    let along = if high > low { (a - Vec3::new(low, 0.0, low)) / (high - low) } else { Vec3::ZERO };
+    let low = low.min(most);
+    Vec3::new(low, 0.0, low) + along * (most - low)
 }
 
 /// The metric of every triangle; nothing for those that have no area in the texture.
@@ -57,13 +76,24 @@ pub fn conductivity(object: &Object, uv: Vec2) -> f32 {
 
 /// Its mean over the texels of charts.
 pub fn usual_conductivity(object: &Object, atlas: &Atlas) -> f32 {
-    if object.material.mean_free_path_scale.texture.is_none() {
-        return conductivity(object, Vec2::ZERO);
-    }
-    let of = |i: usize| atlas.uv_under(object, i).map(|uv| (f64::from(conductivity(object, uv)), 1.0));
     let add = |a: (f64, f64), b: (f64, f64)| (a.0 + b.0, a.1 + b.1);
-    let (sum, count) = (0..atlas.surface.len()).into_par_iter().filter_map(of).reduce(|| (0.0, 0.0), add);
+    let (sum, count) =
+        conductivities(object, atlas).map(|own| (f64::from(own), 1.0)).reduce(|| (0.0, 0.0), add);
     if count > 0.0 { (sum / count) as f32 } else { 1.0 }
+}
+
+/// The largest over the texels of charts.
+pub fn best_conductivity(object: &Object, atlas: &Atlas) -> f32 {
+    conductivities(object, atlas).reduce(|| 0.0, f32::max)
+}
+
+/// Those of all texels of charts; where it is the same everywhere, that one.
+fn conductivities(object: &Object, atlas: &Atlas) -> impl ParallelIterator<Item = f32> {
+    let varies = object.material.mean_free_path_scale.texture.is_some();
+    let count = if varies { atlas.surface.len() } else { 0 };
+    let everywhere = (!varies).then(|| conductivity(object, Vec2::ZERO));
+    let of = |i: usize| atlas.uv_under(object, i).map(|uv| conductivity(object, uv));
+    (0..count).into_par_iter().filter_map(of).chain(everywhere)
 }
 
 /// The metric under every texel that a chart covers, and how well heat flows there; nothing elsewhere.
@@ -85,4 +115,46 @@ pub fn metrics_of_texels(object: &Object, atlas: &Atlas, of_triangles: &[Metric]
 pub fn derivatives_mm_per_texel(object: &Object, triangle: usize, size: usize) -> Option<[Vec3; 2]> {
     let derivatives = derivatives_mm(object, triangle)?.map(|d| d / size as f32);
     derivatives.iter().all(|d| d.is_finite()).then_some(derivatives)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Texels of a tenth of the usual width, however they lie: light flows along them as it should, across as if they were wider.
+    #[test]
+    fn slivers_are_widened_across_whatever_their_direction() {
+        for turn in 0..24 {
+            let angle = turn as f32 * std::f32::consts::TAU / 24.0;
+            let [along, across] = [Vec2::from_angle(angle), Vec2::from_angle(angle).perp()];
+            // One millimetre along, a tenth of that across.
+            let x = [along.x, along.y].map(|part| Vec3::new(part, 0.0, 0.0));
+            let y = [across.x, across.y].map(|part| Vec3::new(0.0, 0.1 * part, 0.0));
+            let Metric { a, area_mm2 } = Metric::new([x[0] + y[0], x[1] + y[1]], 1.0);
+            let flow = |d: Vec2| a.x * d.x * d.x + 2.0 * a.y * d.x * d.y + a.z * d.y * d.y;
+            assert!((area_mm2 - 0.1).abs() < 1e-5, "{turn}: {area_mm2}");
+            assert!((flow(along) - 0.1).abs() < 1e-4, "{turn}: {a}");
+            assert!((flow(across) - 0.1 / (SMALLEST * SMALLEST)).abs() < 1e-4, "{turn}: {a}");
+        }
+    }
+
+    /// The energy of any light on a square of unit texels, by its links, is at most its strength; the waves that reach it are known.
+    #[test]
+    fn no_light_on_a_square_has_more_energy_than_its_strength() {
+        for a in [Vec3::new(1.0, 0.0, 1.0), Vec3::new(2.0, 0.6, 0.7), Vec3::new(0.5, -0.4, 3.0)] {
+            let strength = Metric { a, area_mm2: 1.0 }.strength();
+            let [east, north] = [a.x / 3.0 - a.z / 6.0, a.z / 3.0 - a.x / 6.0];
+            let [rising, falling] = [0.5, -0.5].map(|part| (a.x + a.z) / 6.0 + part * a.y);
+            let links =
+                [(0, 1, east), (2, 3, east), (0, 2, north), (1, 3, north), (0, 3, rising), (1, 2, falling)];
+            let energy = |u: [f32; 4]| {
+                let sum: f32 = links.iter().map(|&(i, j, link)| link * (u[i] - u[j]).powi(2)).sum();
+                sum / u.iter().map(|u| u * u).sum::<f32>()
+            };
+            let slope = |d: Vec2| [-d.x - d.y, d.x - d.y, d.y - d.x, d.x + d.y];
+            let slopes = (0..360).map(|turn| energy(slope(Vec2::from_angle((turn as f32).to_radians()))));
+            let most = slopes.fold(energy([1.0, -1.0, -1.0, 1.0]), f32::max);
+            assert!((most / strength - 1.0).abs() < 1e-3, "{a}: {most} {strength}");
+        }
+    }
 }

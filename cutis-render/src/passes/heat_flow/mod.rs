@@ -20,6 +20,7 @@ mod row;
 pub mod rows;
 mod seam_edges;
 pub mod shore;
+mod squares;
 mod walk;
 
 use crate::passes::atlas::{Atlas, ChartMap};

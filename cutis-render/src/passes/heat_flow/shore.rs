@@ -44,7 +44,8 @@ pub struct Shore<'a> {
     /// Area of a texel on every triangle, mm².
     pub texels_mm2: Vec<f32>,
     object: &'a Object,
-    atlas: &'a Atlas,
+    /// The atlas.
+    pub atlas: &'a Atlas,
 }
 
 impl<'a> Shore<'a> {

@@ -22,7 +22,7 @@ pub struct Cost {
 
 /// Reads of textures by one invocation of every entry point but those of vertices, counted in its source: one light, as many
 /// Gaussians as skin has at a size, loops as long as for most texels, the default bloom of 1080 rows.
-pub const TAPS: [(&str, u64); 40] = [
+pub const TAPS: [(&str, u64); 41] = [
     ("deform_vertices", 0),
     ("stretch_at_vertices", 0),
     ("unroll", 2),
@@ -44,6 +44,7 @@ pub const TAPS: [(&str, u64); 40] = [
     ("add_up", 5),
     ("halve_heat", 32),
     ("keep_padding", 8),
+    ("edge_exchange", 31),
     ("show_point", 0),
     ("begin_blur", 11),
     ("blur_seven", 17),

@@ -77,6 +77,12 @@ impl Map {
         Self::over(texture(gpu, label, size, [layers, 1], format), 0, 0, layers)
     }
 
+    /// A square texture of one layer of zeros that computations write, too.
+    pub fn computed(gpu: &Gpu, label: &str, size: u32, format: wgpu::TextureFormat) -> Self {
+        let usage = usages(format) | wgpu::TextureUsages::STORAGE_BINDING;
+        Self::over(texture_for(gpu, label, [size, size], [1, 1], format, usage), 0, 0, 1)
+    }
+
     fn over(texture: wgpu::Texture, halvings: u32, first_layer: u32, count: u32) -> Self {
         let view = |dimension, layers| view(&texture, dimension, layers, (halvings, 1));
         let array = view(wgpu::TextureViewDimension::D2Array, (first_layer, count));
@@ -143,13 +149,24 @@ impl Map {
     }
 }
 
-/// A texture of zeros.
+/// A texture of zeros for what passes draw into.
 fn texture(
+    gpu: &Gpu,
+    label: &str,
+    size: [u32; 2],
+    layers_and_sizes: [u32; 2],
+    format: wgpu::TextureFormat,
+) -> wgpu::Texture {
+    texture_for(gpu, label, size, layers_and_sizes, format, usages(format))
+}
+
+fn texture_for(
     gpu: &Gpu,
     label: &str,
     [width, height]: [u32; 2],
     [layers, sizes]: [u32; 2],
     format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
 ) -> wgpu::Texture {
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(label),
@@ -158,7 +175,7 @@ fn texture(
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
         format,
-        usage: usages(format),
+        usage,
         view_formats: &[],
     });
     gpu.count(texels(&texture, layers, (0, sizes)) * texel_bytes(format));

@@ -136,6 +136,8 @@ pub enum Bound<'a> {
     Buffer(&'a wgpu::Buffer),
     /// A texture.
     Texture(&'a View),
+    /// A texture of which only so many texels are read or written.
+    Texels(&'a View, u64),
     /// How textures are read.
     Sampler(&'a wgpu::Sampler),
 }
@@ -154,6 +156,7 @@ impl Bound<'_> {
         match self {
             Bound::Buffer(buffer) => buffer.size(),
             Bound::Texture(view) => view.bytes(),
+            Bound::Texels(view, count) => (*count).min(view.texels) * view.texel_bytes,
             Bound::Sampler(_) => 0,
         }
     }
@@ -165,7 +168,9 @@ fn bind(gpu: &Gpu, label: &str, layout: &wgpu::BindGroupLayout, bound: &[(u32, B
         .map(|&(binding, bound)| {
             let resource = match bound {
                 Bound::Buffer(buffer) => buffer.as_entire_binding(),
-                Bound::Texture(view) => wgpu::BindingResource::TextureView(&view.raw),
+                Bound::Texture(view) | Bound::Texels(view, _) => {
+                    wgpu::BindingResource::TextureView(&view.raw)
+                }
                 Bound::Sampler(sampler) => wgpu::BindingResource::Sampler(sampler),
             };
             wgpu::BindGroupEntry { binding, resource }

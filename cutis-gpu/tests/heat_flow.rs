@@ -7,7 +7,7 @@ use common::{head_in_the_studio, read, renderer};
 use cutis_gpu::GpuRenderer;
 use cutis_gpu::cost::by_pass;
 use cutis_gpu::map::half_bytes;
-use cutis_gpu::passes::heat_flow::actions;
+use cutis_gpu::passes::heat_flow::{GpuHeatFlow, actions};
 use cutis_gpu::passes::levels::Levels;
 use cutis_gpu::scene::charts::ChartPyramid;
 use cutis_render::passes::atlas::{Atlas, NO_CHART};
@@ -37,12 +37,25 @@ fn squares(object: &Object, atlas: &Atlas) -> Vec<Vec4> {
 
 /// All levels but the first, as the device makes them.
 fn flown(renderer: &GpuRenderer, atlas: &Atlas, flow: &HeatFlow, light: &[Vec4]) -> Vec<Vec<Vec4>> {
+    flown_in_pose(renderer, atlas, flow, None, light)
+}
+
+/// The same, where the object is put into another pose after the upload.
+fn flown_in_pose(
+    renderer: &GpuRenderer,
+    atlas: &Atlas,
+    flow: &HeatFlow,
+    posed: Option<&Object>,
+    light: &[Vec4],
+) -> Vec<Vec<Vec4>> {
     let (gpu, passes) = common::parts(renderer);
     let charts = ChartPyramid::new(gpu, &atlas.charts, flow.levels.len()).sizes;
     let levels = Levels::new(gpu, &charts, 1, &actions(flow));
     levels.all[0].light.write(gpu, 0, &half_bytes(light.iter().copied()));
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-    let steps = passes.heat_flow.steps(gpu, &charts, &levels, flow);
+    let on_device = GpuHeatFlow::new(gpu, flow.clone());
+    let steps = passes.heat_flow.steps(gpu, &charts, &levels, &on_device);
+    posed.into_iter().for_each(|object| on_device.set_pose(gpu, object));
     // Twice: what a frame leaves behind must not show in the next.
     for _ in 0..2 {
         steps.iter().for_each(|step| step.encode(&mut encoder, None));
@@ -72,7 +85,7 @@ fn both_machines_spread_the_same_light() {
     assert!(flow.levels.len() > 1, "there is a coarse level");
     let light = squares(object, &atlas);
     let (exact, found) = (flow.flow(&light), flown(renderer, &atlas, &flow, &light));
-    let charts = flow.levels.iter().flat_map(|level| level.times.iter().map(|_| &level.charts.chart));
+    let charts = flow.levels.iter().flat_map(|level| level.times.iter().map(|_| &level.atlas.charts.chart));
     for (n, ((exact, found), charts)) in exact.iter().zip(&found).zip(charts).enumerate() {
         let [mean, worst] = apart(charts, found, exact);
         eprintln!("{} mm²: mean {mean}, worst {worst}", variances_mm2[n]);
@@ -114,12 +127,39 @@ fn both_machines_halve_light_alike() {
     let mut flow = HeatFlow::new(object, &atlas, &stretch_mm_per_texel(object, &atlas), &[0.1, 200.0]);
     let coarse = flow.levels.last_mut().unwrap();
     coarse.times[0] = vec![1.0];
-    let charts = coarse.charts.chart.clone();
+    let charts = coarse.atlas.charts.chart.clone();
     let light = squares(object, &atlas);
     let (exact, found) = (flow.flow(&light), flown(renderer, &atlas, &flow, &light));
     let [mean, worst] = apart(&charts, &found[1], &exact[1]);
     eprintln!("mean {mean}, worst {worst}");
     assert!(mean < 0.001 && worst < 0.005, "{mean} {worst}");
+}
+
+/// A head that is drawn out to one and a half times its height after the upload, and narrows.
+#[test]
+fn heat_flows_by_the_pose() {
+    let Some(renderer) = renderer("heat_flows_by_the_pose") else { return };
+    let scene = head_in_the_studio();
+    let object = &scene.objects[0];
+    let atlas = Atlas::new(object, SIZE);
+    let mut mesh = object.mesh.clone();
+    mesh.positions_mm.iter_mut().for_each(|p| *p *= glam::Vec3::new(0.8, 1.5, 0.8));
+    let posed = Object::new("head", mesh, object.material.clone());
+    let variances_mm2 = [0.5, 8.0, 200.0];
+    let flow =
+        HeatFlow::new(object, &atlas, &stretch_mm_per_texel(object, &atlas), &variances_mm2).for_all_poses();
+    let light = squares(object, &atlas);
+    let mut in_pose = flow.clone();
+    in_pose.set_pose(&posed);
+    let found = flown_in_pose(renderer, &atlas, &flow, Some(&posed), &light);
+    let charts = flow.levels.iter().flat_map(|level| level.times.iter().map(|_| &level.atlas.charts.chart));
+    for (n, (found, charts)) in found.iter().zip(charts).enumerate() {
+        let [mean, worst] = apart(charts, found, &in_pose.flow(&light)[n]);
+        let [at_rest, _] = apart(charts, found, &flow.flow(&light)[n]);
+        eprintln!("{} mm²: mean {mean}, worst {worst}, from rest {at_rest}", variances_mm2[n]);
+        assert!(mean < 0.0035 && worst < 0.016, "{} mm²: {mean} {worst}", variances_mm2[n]);
+        assert!(at_rest > 4.0 * mean, "{} mm²: the pose shows", variances_mm2[n]);
+    }
 }
 
 /// What a frame's heat flow moves through memory, at 1 TB/s, on maps of 1024²; what stages read twice or leave out is not known.

@@ -10,16 +10,18 @@
 @group(0) @binding(13) var nearest: sampler;
 
 struct Stage {
-    /// What sums take of the polynomial that is known last, …
-    parts: vec4f,
-    /// … of the one before, …
-    parts_before: vec4f,
-    /// … and of what they hold: 0 to begin with, then 1.
-    kept: vec4f,
-    /// The next polynomial: so many times x of this one …
+    /// What sums take of the polynomial that is known last …
+    parts: vec3f,
+    /// The next polynomial: so many times x of that one …
     factor: f32,
+    /// … and of the one before.
+    parts_before: vec3f,
     /// … less so much of the one before.
     part: f32,
+    /// What they take of what they hold: 0 to begin with, then 1.
+    kept: f32,
+    /// Number of sums.
+    sums: u32,
     /// Width and height of the map, texels.
     size: u32,
     /// Another one for every stage.

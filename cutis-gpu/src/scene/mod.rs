@@ -219,7 +219,7 @@ impl GpuScene {
     }
 
     /// Deforms all objects from rest into a pose, from the next frame on; `scene` is the one this was made from.
-    /// Stretch, the unrolled surface, the taps of the blurs, openness and the lights' maps follow.
+    /// Stretch, the unrolled surface, the taps of the blurs, how heat flows, openness and the lights' maps follow.
     ///
     /// # Errors
     /// If it names what no object has, or a number makes no sense; nothing moves then.
@@ -227,7 +227,21 @@ impl GpuScene {
         pose.check(&scene.objects)?;
         let aspect = self.picture.aspect();
         self.posing.set_pose(gpu, &self.shared, scene, pose, aspect);
+        self.let_heat_flow(gpu, scene, pose)?;
         self.changed.store(true, Ordering::Relaxed);
+        Ok(())
+    }
+
+    /// Measures anew how heat flows, on the processor.
+    fn let_heat_flow(&self, gpu: &Gpu, scene: &Scene, pose: &Pose) -> Result<(), PoseError> {
+        if self.objects.iter().all(|object| object.flow.is_none()) {
+            return Ok(());
+        }
+        let mut posed = scene.clone();
+        posed.set_pose(pose)?;
+        for (maps, object) in self.objects.iter().zip(&posed.objects) {
+            maps.flow.iter().for_each(|flow| flow.set_pose(gpu, object));
+        }
         Ok(())
     }
 

@@ -11,6 +11,7 @@ use crate::map::{Map, View};
 use crate::passes::atlas::AtlasMaps;
 use crate::passes::depth_map::DepthMapInputs;
 use crate::passes::diffusion::{like_level, shortened};
+use crate::passes::heat_flow::GpuHeatFlow;
 use crate::passes::inside::Inside;
 use crate::passes::irradiance::IrradianceInputs;
 use crate::passes::levels::{Level, Levels};
@@ -59,7 +60,8 @@ impl Prepared {
         let texel_mm = median_texel_mm(&atlas.charts, &stretch_mm);
         let flows = settings.light_inside() == TechniqueName::TextureSpace
             && settings.diffusion == Diffusion::HeatFlow;
-        let flow = flows.then(|| HeatFlow::new(object, &atlas, &stretch_mm, &kernel.variances_mm2));
+        let flow =
+            flows.then(|| HeatFlow::new(object, &atlas, &stretch_mm, &kernel.variances_mm2).for_all_poses());
         Self { atlas, texel_mm, kernel, rho_dt: RhoDt::new(object.material.f0), flow }
     }
 }
@@ -88,6 +90,8 @@ pub struct ObjectMaps {
     pub charts: ChartPyramid,
     /// Where its charts meet.
     pub seams: Seams,
+    /// How heat flows over it, where light is spread like that.
+    pub flow: Option<GpuHeatFlow>,
     material: MaterialMaps,
     rho_dt: Map,
     technique: TechniqueName,
@@ -157,12 +161,13 @@ impl ObjectMaps {
             atlas,
             seams,
             charts,
+            flow: flow.map(|flow| GpuHeatFlow::new(gpu, flow)),
             material,
             technique: settings.light_inside(),
             inside,
         };
         let light = Lighting { gpu, passes, shared, number, maps: &maps };
-        let shares = light.steps((&plan, flow.as_ref()), &mut steps);
+        let shares = light.steps(&plan, &mut steps);
         if maps.technique == TechniqueName::TextureSpace {
             maps.add_spread(gpu, passes, shared, (number, texel_mm), shares.as_ref(), &mut steps);
         }
@@ -261,7 +266,7 @@ struct Lighting<'a> {
 
 impl Lighting<'_> {
     /// Adds its steps by a plan. Gives each light's share, where there are several.
-    fn steps(&self, (plan, flow): (&[Action], Option<&HeatFlow>), all: &mut ObjectSteps) -> Option<Map> {
+    fn steps(&self, plan: &[Action], all: &mut ObjectSteps) -> Option<Map> {
         let steps = &mut all.light;
         let Self { gpu, passes, shared, maps, .. } = *self;
         let size = maps.charts.sizes[0].size;
@@ -299,7 +304,7 @@ impl Lighting<'_> {
             }));
             shares
         });
-        if let Some(flow) = flow {
+        if let Some(flow) = &maps.flow {
             steps.extend(passes.heat_flow.steps(gpu, &maps.charts.sizes, &maps.levels, flow));
             return shares;
         }

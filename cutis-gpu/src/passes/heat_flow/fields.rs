@@ -2,11 +2,12 @@
 
 use super::LIGHT;
 use crate::Gpu;
-use crate::map::{Map, View};
+use crate::map::{Map, View, half_bytes};
 use crate::pipeline::{Bound, Pipeline};
 use crate::step::{Draw, Step};
 use bytemuck::{Pod, Zeroable};
 use cutis_render::passes::heat_flow::Level;
+use cutis_render::passes::heat_flow::exchange::Exchange;
 use cutis_render::passes::heat_flow::rows::Rows;
 use glam::Vec4;
 use half::f16;
@@ -34,16 +35,23 @@ pub struct GpuRows {
     pub links: wgpu::Buffer,
     /// Number of rows.
     pub count: u32,
+    /// Number of links.
+    pub link_count: u32,
 }
 
 /// What a level needs on the device.
+#[derive(Debug)]
 pub struct Fields {
+    /// Coefficients of every time.
+    pub times: Vec<Vec<f32>>,
     /// What of each neighbour's difference a texel takes at once: from the east on, and from the west on.
     pub taken: [Map; 2],
     /// How much of what flows a texel takes: the inverse of its area.
     pub paces: Map,
     /// What texels at the edges of charts take from further away.
     pub edges: GpuRows,
+    /// What they take of the map of twice the size.
+    pub halved: Option<GpuRows>,
     /// What the padding reads.
     pub padding: GpuRows,
     /// Where that is kept.
@@ -57,28 +65,45 @@ pub struct Fields {
 impl Fields {
     /// Of a level.
     pub fn new(gpu: &Gpu, level: &Level) -> Self {
-        let exchange = &level.exchange;
-        let size = exchange.size as u32;
-        let taken = taken(level);
-        let speed = 2.0 / exchange.fastest_rate_per_mm2;
-        let paces = exchange
-            .inverse_areas_per_mm2
-            .iter()
-            .map(|per_area| f16::from_f32((per_area * speed).min(FASTEST_PACE)));
-        let bytes: Vec<u8> = paces.flat_map(|pace| pace.to_bits().to_le_bytes()).collect();
-        let entries =
-            level.padding.iter().flat_map(|(texel, read)| read.iter().map(move |&(t, w)| (*texel, t, w)));
+        let size = level.exchange.size as u32;
+        let padding = level.layout.padding.iter();
+        let entries = padding.flat_map(|(texel, read)| read.iter().map(move |&(t, w)| (*texel, t, w)));
         let padding = GpuRows::new(gpu, &Rows::new(entries.collect()));
-        Self {
-            taken: [0, 1]
-                .map(|side| Map::of_values(gpu, "taken", [size, size], taken.iter().map(move |t| t[side]))),
-            paces: Map::filled(gpu, "paces", [size, size], Format::R16Float, &bytes),
+        let fields = Self {
+            times: level.times.clone(),
+            taken: std::array::from_fn(|_| Map::square(gpu, "taken", size, 1, LIGHT)),
+            paces: Map::square(gpu, "paces", size, 1, Format::R16Float),
             edges: GpuRows::new(gpu, &taken_further(level)),
+            halved: level.halving.as_ref().map(|halving| GpuRows::new(gpu, &halving.rows())),
             kept: gpu.storage("padding", &vec![Vec4::ZERO; padding.count as usize]),
             padding,
-            turns: std::array::from_fn(|_| Map::square(gpu, "polynomial", size, 1, LIGHT)),
+            turns: std::array::from_fn(|_| Map::computed(gpu, "polynomial", size, LIGHT)),
             spare: Map::square(gpu, "sums", size, level.times.len().max(1) as u32, LIGHT),
+        };
+        fields.write_bulk(gpu, level);
+        fields
+    }
+
+    /// Writes what a pose changes.
+    pub fn write(&self, gpu: &Gpu, level: &Level) {
+        self.write_bulk(gpu, level);
+        self.edges.write(gpu, &taken_further(level));
+        if let (Some(rows), Some(halving)) = (&self.halved, &level.halving) {
+            rows.write(gpu, &halving.rows());
         }
+    }
+
+    fn write_bulk(&self, gpu: &Gpu, level: &Level) {
+        let taken = taken(level);
+        for (side, map) in self.taken.iter().enumerate() {
+            map.write(gpu, 0, &half_bytes(taken.iter().map(|t| t[side])));
+        }
+        let Exchange { inverse_areas_per_mm2, fastest_rate_per_mm2, .. } = &level.exchange;
+        let speed = 2.0 / fastest_rate_per_mm2;
+        let paces =
+            inverse_areas_per_mm2.iter().map(|per_area| f16::from_f32((per_area * speed).min(FASTEST_PACE)));
+        let bytes: Vec<u8> = paces.flat_map(|pace| pace.to_bits().to_le_bytes()).collect();
+        self.paces.write(gpu, 0, &bytes);
     }
 }
 
@@ -123,12 +148,21 @@ impl GpuRows {
         let last = rows.starts.last().copied().unwrap_or(0);
         let pairs = rows.texels.iter().zip(&rows.starts).map(|(&texel, &start)| [texel, start]);
         let pairs: Vec<[u32; 2]> = pairs.chain([[0, last]]).collect();
-        let links: Vec<Link> = rows.links.iter().map(|&(texel, strength)| Link { texel, strength }).collect();
         Self {
             rows: gpu.storage("rows", &pairs),
-            links: gpu.storage("links", &links),
+            links: gpu.storage("links", &links(rows)),
             count: rows.texels.len() as u32,
+            link_count: rows.links.len() as u32,
         }
+    }
+
+    /// Writes other strengths of the same links.
+    ///
+    /// # Panics
+    /// If there are more or fewer.
+    pub fn write(&self, gpu: &Gpu, rows: &Rows) {
+        assert_eq!(rows.links.len(), self.link_count as usize, "a pose has the links of the layout");
+        gpu.queue.write_buffer(&self.links, 0, bytemuck::cast_slice(&links(rows)));
     }
 
     /// A point for every row.
@@ -143,6 +177,10 @@ impl GpuRows {
         all.extend([(9, Bound::Buffer(&self.rows)), (10, Bound::Buffer(&self.links))]);
         (self.count > 0).then(|| points(gpu, pipeline, &all, target, self.count))
     }
+}
+
+fn links(rows: &Rows) -> Vec<Link> {
+    rows.links.iter().map(|&(texel, strength)| Link { texel, strength }).collect()
 }
 
 /// A point for every vertex.

@@ -1,6 +1,6 @@
 //! Heat flow on the unrolled surface: cutis-render's `heat_flow`, whose links it uploads.
 //!
-//! A stage is one draw over the tiles of the charts, without branches, and one of points at their edges. Polynomials are kept in
+//! A stage is one draw over the tiles of the charts, without branches, and one computation for the texels at their edges. Polynomials are kept in
 //! three maps in turn, sums in the levels and a spare map in turn. Two polynomials are added to a sum at once. Nothing is blended:
 //! 16 bits hold what is wanted only if every stage rounds without a bias.
 
@@ -19,9 +19,11 @@ use bytemuck::{Pod, Zeroable};
 use cutis_render::passes::blur::Widening;
 use cutis_render::passes::diffusion::Action;
 use cutis_render::passes::heat_flow::HeatFlow;
+use cutis_scene::Object;
+use fields::Fields;
 pub use fields::Link;
-use fields::{Fields, GpuRows};
 use row::Row;
+use std::sync::{Mutex, PoisonError};
 use wgpu::TextureFormat as Format;
 
 /// Most sums that are drawn at once.
@@ -32,16 +34,18 @@ const LIGHT: Format = Format::Rgba16Float;
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Stage {
-    /// What sums take of the polynomial that is known last, …
-    pub parts: [f32; 4],
-    /// … of the one before, …
-    pub parts_before: [f32; 4],
-    /// … and of what they hold: 0 to begin with, then 1.
-    pub kept: [f32; 4],
-    /// The next polynomial: so many times x of this one …
+    /// What sums take of the polynomial that is known last …
+    pub parts: [f32; TOGETHER],
+    /// The next polynomial: so many times x of that one …
     pub factor: f32,
+    /// … and of the one before.
+    pub parts_before: [f32; TOGETHER],
     /// … less so much of the one before.
     pub part: f32,
+    /// What they take of what they hold: 0 to begin with, then 1.
+    pub kept: f32,
+    /// Number of sums.
+    pub sums: u32,
     /// Width and height of the map, texels.
     pub size: u32,
     /// Another one for every stage.
@@ -57,11 +61,36 @@ pub struct HeatFlowPass {
     exchange: [Pipeline; TOGETHER],
     add_up: [Pipeline; TOGETHER],
     halve: Pipeline,
-    edge_exchange: Pipeline,
+    edge_exchange: ComputePipeline,
     edge_halved: Pipeline,
     edge_kept: Pipeline,
     keep_padding: ComputePipeline,
     nearest: wgpu::Sampler,
+}
+
+/// How heat flows over one object on the device.
+#[derive(Debug)]
+pub struct GpuHeatFlow {
+    flow: Mutex<HeatFlow>,
+    levels: Vec<Fields>,
+}
+
+impl GpuHeatFlow {
+    /// Uploads a flow, in the pose that it has.
+    pub fn new(gpu: &Gpu, flow: HeatFlow) -> Self {
+        let levels = flow.levels.iter().map(|level| Fields::new(gpu, level)).collect();
+        Self { flow: Mutex::new(flow), levels }
+    }
+
+    /// Lets heat flow over the object in another pose, from the next frame on.
+    ///
+    /// # Panics
+    /// If the flow was not made for all poses.
+    pub fn set_pose(&self, gpu: &Gpu, object: &Object) {
+        let mut flow = self.flow.lock().unwrap_or_else(PoisonError::into_inner);
+        flow.set_pose(object);
+        self.levels.iter().zip(&flow.levels).for_each(|(fields, level)| fields.write(gpu, level));
+    }
 }
 
 /// The actions that make levels for a flow: see [`Levels::new`].
@@ -97,7 +126,7 @@ impl HeatFlowPass {
             exchange: std::array::from_fn(|n| over(shaders::HEAT_FLOW, "exchange", n + 2)),
             add_up: std::array::from_fn(|n| over(shaders::HEAT_FLOW, "add_up", n + 1)),
             halve: over(shaders::HEAT_HALVE, "halve_heat", 1),
-            edge_exchange: points("edge_exchange"),
+            edge_exchange: ComputePipeline::new(gpu, "heat flow", shaders::HEAT_ROWS, "edge_exchange"),
             edge_halved: points("edge_halved"),
             edge_kept: points("edge_kept"),
             keep_padding: ComputePipeline::new(gpu, "heat flow", shaders::HEAT_ROWS, "keep_padding"),
@@ -107,34 +136,39 @@ impl HeatFlowPass {
 
     /// The steps that fill all levels but the first, from that one. `charts` are those of the first size and of every halved one;
     /// the levels were made for [`actions`].
-    pub fn steps(&self, gpu: &Gpu, charts: &[ChartTexture], levels: &Levels, flow: &HeatFlow) -> Vec<Step> {
+    pub fn steps(
+        &self,
+        gpu: &Gpu,
+        charts: &[ChartTexture],
+        levels: &Levels,
+        flow: &GpuHeatFlow,
+    ) -> Vec<Step> {
         let mut steps = Vec::new();
         let mut light = levels.all[0].light.clone();
         let mut first = 1;
-        let mut finer: Option<Map> = None;
-        for (level, charts) in flow.levels.iter().zip(charts) {
-            let fields = Fields::new(gpu, level);
-            if let (Some(halving), Some(paces)) = (&level.halving, &finer) {
-                let rows = GpuRows::new(gpu, &halving.rows());
+        let mut finer: Option<&Fields> = None;
+        for (fields, charts) in flow.levels.iter().zip(charts) {
+            if let (Some(rows), Some(finer)) = (&fields.halved, finer) {
                 let halved = Map::square(gpu, "halved light", charts.size, light.layers.len() as u32, LIGHT);
                 for (fine, coarse) in light.layers.iter().zip(&halved.layers) {
-                    let bound = [(1, Bound::Texture(fine)), (2, Bound::Texture(paces.view()))];
+                    let bound = [(1, Bound::Texture(fine)), (2, Bound::Texture(finer.paces.view()))];
                     steps.push(over_charts(gpu, &self.halve, charts, &bound, &[coarse], false));
                     let stage = gpu.uniform("stage", &Stage { size: charts.size, ..Stage::zeroed() });
-                    let bound = [(1, Bound::Buffer(&stage)), (2, Bound::Texture(fine))];
+                    let fine = Bound::Texels(fine, u64::from(rows.link_count));
+                    let bound = [(1, Bound::Buffer(&stage)), (2, fine)];
                     steps.extend(rows.draw(gpu, &self.edge_halved, &bound, coarse));
                 }
                 light = halved;
             }
-            let ends = first + level.times.len();
-            let row = Row { pass: self, gpu, charts, level, fields: &fields };
+            let ends = first + fields.times.len();
+            let row = Row { pass: self, gpu, charts, fields };
             for layer in 0..light.layers.len() {
                 let sums: Vec<&View> =
                     levels.all[first..ends].iter().map(|level| &level.light.layers[layer]).collect();
                 row.steps(&light.layers[layer], &sums, &mut steps);
             }
             first = ends;
-            finer = Some(fields.paces);
+            finer = Some(fields);
         }
         steps
     }

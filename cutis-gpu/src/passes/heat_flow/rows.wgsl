@@ -1,4 +1,4 @@
-// Texels at the edges of charts, as points: what they get from any others, row by row of a sparse matrix. The twin of
+// Texels at the edges of charts: what they get from any others, row by row of a sparse matrix. The twin of
 // cutis-render's `heat_flow::row`, of its `coarse` and of the padding.
 
 @group(0) @binding(1) var<uniform> stage: Stage;
@@ -8,6 +8,8 @@
 /// Light that was read before.
 @group(0) @binding(11) var<storage, read> kept: array<vec4f>;
 @group(0) @binding(12) var<storage, read_write> keeping: array<vec4f>;
+/// Where the next polynomial goes.
+@group(0) @binding(14) var following: texture_storage_2d<rgba16float, write>;
 
 struct Link {
     texel: u32,
@@ -39,14 +41,18 @@ fn reading(row: u32, size: u32) -> vec4f {
 }
 
 /// The next polynomial of a texel that takes from further away.
-@vertex
-fn edge_exchange(@builtin(vertex_index) row: u32) -> Point {
-    let at = here(texel_of(rows[row].x));
+@compute @workgroup_size(64)
+fn edge_exchange(@builtin(global_invocation_id) id: vec3u) {
+    if id.x + 1u >= arrayLength(&rows) {
+        return;
+    }
+    let texel = texel_of(rows[id.x].x);
+    let at = here(texel);
     var taken = vec4f(0.0);
-    for (var n = rows[row].y; n < rows[row + 1u].y; n++) {
+    for (var n = rows[id.x].y; n < rows[id.x + 1u].y; n++) {
         taken += (textureLoad(now, texel_of(further[n].texel), 0) - at.now) * further[n].strength;
     }
-    return point(rows[row].x, next(at, taken));
+    textureStore(following, texel, next(at, taken));
 }
 
 /// Light of a texel of half the size from the fine map.

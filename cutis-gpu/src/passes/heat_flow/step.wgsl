@@ -14,10 +14,13 @@ struct Stepped {
     @location(3) sum_c: vec4f,
 }
 
-/// A sum with what this stage and the one before it give.
+/// A sum with what this stage and the one before it give; those that are not drawn cost nothing.
 fn added(sum: texture_2d<f32>, at: Here, n: u32) -> vec4f {
+    if n >= stage.sums {
+        return vec4f(0.0);
+    }
     // What is there before the first is of no concern, be it a number or not.
-    let so_far = select(vec4f(0.0), textureSampleLevel(sum, nearest, at.uv, 0.0), stage.kept[n] > 0.0);
+    let so_far = select(vec4f(0.0), textureSampleLevel(sum, nearest, at.uv, 0.0), stage.kept > 0.0);
     return rounded(so_far + stage.parts[n] * at.now + stage.parts_before[n] * at.before, at.texel, stage.seed);
 }
 

@@ -61,11 +61,7 @@ impl Halving {
             rest,
             bare: Vec::new(),
         };
-        halving.areas_mm2 = halving
-            .gathered(&fine_mm2.iter().map(|&a| f64::from(a)).collect::<Vec<_>>())
-            .iter()
-            .map(|&a| a as f32)
-            .collect();
+        halving.set_areas(fine_mm2);
         halving.bare = (0..size * size)
             .filter(|&i| halving.areas_mm2[i] <= 0.0 && shore.chart(i) != NO_CHART)
             .flat_map(|i| {
@@ -77,6 +73,13 @@ impl Halving {
             })
             .collect();
         halving
+    }
+
+    /// Takes the areas of fine texels in another pose.
+    pub fn set_areas(&mut self, fine_mm2: &[f32]) {
+        self.fine_mm2 = fine_mm2.to_vec();
+        let energy: Vec<f64> = fine_mm2.iter().map(|&area| f64::from(area)).collect();
+        self.areas_mm2 = self.gathered(&energy).iter().map(|&area| area as f32).collect();
     }
 
     /// What those coarse texels take, by fine texels, that are not in the middle of four whole squares or take from elsewhere, too; it

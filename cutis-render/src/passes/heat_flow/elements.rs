@@ -27,7 +27,7 @@ pub fn elements(object: &Object, layout: &Layout, metrics: &[Metric], areas_mm2:
     let mut all: Vec<Element> =
         cells.map(|(cell, slopes)| of_cell(cell, &slopes.to_cols_array_2d())).collect();
     let jump = |gap: &Gap| gap.jump(object, layout.size, metrics, (&layout.cells, &slopes));
-    let jumps: Vec<Jump> = layout.gaps.par_iter().filter_map(jump).collect();
+    let jumps: Vec<Jump> = layout.gaps.par_iter().map(jump).collect();
     let mut loads = vec![0.0f32; layout.cells.len()];
     for jump in &jumps {
         jump.cells.iter().for_each(|&cell| loads[cell as usize] += jump.load);

@@ -4,13 +4,15 @@
 //! what S couples: inside of charts those of a texel to its eight neighbours, at their edges those of a sparse matrix.
 
 use super::cells::{Cell, Cells};
+use super::coarse::Halving;
 use super::elements::{elements, rows};
 use super::gaps::{Gap, gaps};
-use super::metric::{Metric, SMALLEST, best_conductivity};
+use super::metric::{SMALLEST, best_conductivity, metrics, metrics_of_texels};
 use super::padding::padding;
 use super::rows::Rows;
 use super::shore::{Read, Shore};
 use super::squares::Squares;
+use crate::passes::atlas::Atlas;
 use cutis_scene::Object;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -54,8 +56,10 @@ pub struct Exchange {
     pub inverse_areas_per_mm2: Vec<f32>,
     /// Where there is surface, row by row.
     pub runs: Vec<Vec<Range<usize>>>,
-    /// Every wave of light falls more slowly, 1/mm².
+    /// No wave of light falls faster, 1/mm², …
     pub fastest_rate_per_mm2: f32,
+    /// … and none does so in any pose.
+    pub limit_per_mm2: f32,
 }
 
 impl Layout {
@@ -76,20 +80,20 @@ impl Layout {
 }
 
 impl Exchange {
-    /// For the pose of an object: metrics of its triangles and of its texels. Areas follow from them, unless they are given.
+    /// For the pose of an object. Areas are those of what is halved; of the surface, where nothing is.
     pub fn new(
         object: &Object,
+        atlas: &Atlas,
         layout: &Layout,
-        (metrics, of_texels): (&[Metric], &[Metric]),
-        areas_mm2: Option<&[f32]>,
+        halving: Option<&Halving>,
         texel_mm: f32,
     ) -> Self {
         let size = layout.size;
-        let mut squares = Squares::new(size, &layout.whole, of_texels);
+        let metrics = metrics(object, size, texel_mm);
+        let mut squares = Squares::new(size, &layout.whole, &metrics_of_texels(object, atlas, &metrics));
         let mut own_mm2 = squares.areas_mm2();
-        let elements = elements(object, layout, metrics, &mut own_mm2);
-        let is_given = areas_mm2.is_some();
-        let areas_mm2 = areas_mm2.map_or(own_mm2, <[f32]>::to_vec);
+        let elements = elements(object, layout, &metrics, &mut own_mm2);
+        let areas_mm2 = halving.map_or(own_mm2, |halving| halving.areas_mm2.clone());
         // What is less is rounding, and its inverse beyond bounds.
         let least_mm2 = LEAST_AREA * texel_mm * texel_mm;
         let areas_mm2: Vec<f32> =
@@ -97,13 +101,14 @@ impl Exchange {
         let inverse_areas_per_mm2: Vec<f32> =
             areas_mm2.iter().map(|&area| if area > 0.0 { area.recip() } else { 0.0 }).collect();
         let runs = areas_mm2.par_chunks(size).map(runs_of).collect();
-        let fastest_rate_per_mm2 = FASTEST * layout.best_conductivity / (texel_mm * texel_mm);
-        if is_given {
-            squares.slow_down(&areas_mm2, fastest_rate_per_mm2);
+        let limit_per_mm2 = FASTEST * layout.best_conductivity / (texel_mm * texel_mm);
+        // By the surface's own areas no square is too fast.
+        if halving.is_some() {
+            squares.slow_down(&areas_mm2, limit_per_mm2);
         }
         let strengths = squares.strengths();
         let all = rows(&elements, &vec![1.0; size * size]);
-        let rows = rows(&elements, &pace(&all, &areas_mm2, &strengths, fastest_rate_per_mm2));
+        let rows = rows(&elements, &pace(&all, &areas_mm2, &strengths, limit_per_mm2));
         let fastest_rate_per_mm2 = bound_of_rates(&rows, &inverse_areas_per_mm2, strengths);
         Self {
             size,
@@ -113,6 +118,7 @@ impl Exchange {
             inverse_areas_per_mm2,
             runs,
             fastest_rate_per_mm2,
+            limit_per_mm2,
         }
     }
 }

@@ -81,14 +81,32 @@ fn side(shore: &Shore, cells: &Cells, (triangle, corner): (u32, u8), at: Vec2, p
 }
 
 impl Gap {
-    /// By texels, for the pose of the mesh, with the slopes of all cells. `None` where a side has no extent.
+    /// By texels, for the pose of the mesh, with the slopes of all cells; nothing is linked where a side has no extent.
     pub fn jump(
         &self,
         object: &Object,
         size: usize,
         metrics: &[Metric],
         (cells, slopes): (&[Cell], &[Mat4]),
-    ) -> Option<Jump> {
+    ) -> Jump {
+        let [here, beyond] = &self.sides;
+        let nothing = Measures { flows: [Vec2::ZERO; 2], length_mm: 0.0, spring_per_mm: 0.0, load: 0.0 };
+        let Measures { flows, length_mm, spring_per_mm, load } =
+            self.measures(object, size, metrics, (cells, slopes)).unwrap_or(nothing);
+        let mut jump =
+            Jump { terms: Vec::new(), length_mm, spring_per_mm, cells: [here.cell, beyond.cell], load };
+        jump.add(here, cells, 1.0, flows[0]);
+        jump.add(beyond, cells, -1.0, flows[1]);
+        jump
+    }
+
+    fn measures(
+        &self,
+        object: &Object,
+        size: usize,
+        metrics: &[Metric],
+        (cells, slopes): (&[Cell], &[Mat4]),
+    ) -> Option<Measures> {
         let [here, beyond] = &self.sides;
         let p = object.mesh.corners_mm(here.triangle as usize);
         let corner = usize::from(here.corner);
@@ -105,13 +123,18 @@ impl Gap {
         });
         let sum = burdens[0] + burdens[1];
         let load = length_mm / spring_per_mm * burdens[0] * burdens[1] / sum;
-        let cell = |side: &Side| side.cell;
-        let mut jump =
-            Jump { terms: Vec::new(), length_mm, spring_per_mm, cells: [cell(here), cell(beyond)], load };
-        jump.add(here, cells, 1.0, out * (burdens[1] / sum));
-        jump.add(beyond, cells, -1.0, -into * (burdens[0] / sum));
-        jump.load.is_finite().then_some(jump)
+        let flows = [out * (burdens[1] / sum), -into * (burdens[0] / sum)];
+        load.is_finite().then_some(Measures { flows, length_mm, spring_per_mm, load })
     }
+}
+
+/// What follows from the pose at a place of a seam.
+struct Measures {
+    /// What flows from there to here by the slopes of each side, texels per mm.
+    flows: [Vec2; 2],
+    length_mm: f32,
+    spring_per_mm: f32,
+    load: f32,
 }
 
 /// The most that a slope's square can be by a cell's energy: d·S⁻¹·d, where one corner stands still.

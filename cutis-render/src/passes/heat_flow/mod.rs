@@ -32,7 +32,7 @@ use coarse::{ADDED_TEXEL2, Halving};
 use cutis_scene::Object;
 use exchange::{Exchange, Layout};
 use glam::Vec4;
-use metric::{metrics, metrics_of_texels, usual_conductivity};
+use metric::usual_conductivity;
 pub use row::Light;
 use row::flown;
 use shore::{Read, Shore};
@@ -57,16 +57,22 @@ pub struct HeatFlow {
 /// A size of the maps.
 #[derive(Debug, Clone)]
 pub struct Level {
-    /// Its charts.
-    pub charts: Arc<ChartMap>,
-    /// Who gives how much heat to whom.
+    /// The surface unrolled.
+    pub atlas: Atlas,
+    /// What its edges need, whatever the pose.
+    pub layout: Layout,
+    /// Who gives how much heat to whom, in the pose.
     pub exchange: Exchange,
-    /// Texels of the padding, and what they hold.
-    pub padding: Vec<(u32, Read)>,
     /// From the map of twice the size.
     pub halving: Option<Halving>,
     /// Coefficients of every time that is flown here.
     pub times: Vec<Vec<f32>>,
+    /// Those times, mm².
+    times_mm2: Vec<f32>,
+    /// The usual width of a texel, mm, …
+    texel_mm: f32,
+    /// … and how well heat usually flows.
+    usual_conductivity: f32,
 }
 
 impl HeatFlow {
@@ -80,7 +86,7 @@ impl HeatFlow {
         let widest_mm2 = MOST_EXTENTS2 * extent_mm2(object) / usual;
         let mut levels: Vec<Level> = Vec::new();
         let mut left = variances_mm2;
-        let (mut atlas, mut fine, mut added_texel2) = (atlas.clone(), None::<Atlas>, 0.0);
+        let (mut atlas, mut added_texel2) = (atlas.clone(), 0.0);
         loop {
             let halves = atlas.size.is_multiple_of(2) && atlas.size / 2 >= MIN_SIZE;
             let wide = |v: &f32| halves && v.sqrt() * narrowest >= COARSE_DEVIATION_TEXELS * 2.0 * texel_mm;
@@ -89,19 +95,36 @@ impl HeatFlow {
             let added_mm2 = added_texel2 * texel_mm * texel_mm / usual;
             let time_mm2 = |v: &f32| 0.5 * (v.min(widest_mm2) - added_mm2).max(0.0);
             let times_mm2: Vec<f32> = left[..here].iter().map(time_mm2).collect();
-            let finer = levels.last().zip(fine.as_ref());
-            let finer = finer.map(|(level, atlas)| (atlas, level.exchange.areas_mm2.as_slice()));
-            levels.push(Level::new(object, &atlas, finer, (texel_mm, usual), &times_mm2));
+            let size = atlas.size;
+            let charts = halves.then(|| Arc::new(atlas.charts.halved()));
+            levels.push(Level::new(object, atlas, levels.last(), (texel_mm, usual), times_mm2));
             left = &left[here..];
-            if left.is_empty() {
-                return Self { levels };
-            }
+            let Some(charts) = charts.filter(|_| !left.is_empty()) else { return Self { levels } };
             let halved = if levels.len() == 1 { 0.0 } else { added_texel2 - BILINEAR_TEXEL2 };
             added_texel2 = 0.25 * halved + ADDED_TEXEL2 + BILINEAR_TEXEL2;
             texel_mm *= 2.0;
-            let charts = Arc::new(atlas.charts.halved());
-            let coarse = Atlas { charts, ..Atlas::new(object, atlas.size / 2) };
-            fine = Some(std::mem::replace(&mut atlas, coarse));
+            atlas = Atlas { charts, ..Atlas::new(object, size / 2) };
+        }
+    }
+
+    /// The same with stages that serve every pose: links may become as fast as they ever do.
+    #[must_use]
+    pub fn for_all_poses(mut self) -> Self {
+        for level in &mut self.levels {
+            level.exchange.fastest_rate_per_mm2 = level.exchange.limit_per_mm2;
+            level.times = level.coefficients();
+        }
+        self
+    }
+
+    /// Lets heat flow over the object in another pose; what depends on the layout alone stays, and so do the stages.
+    ///
+    /// # Panics
+    /// If they were not made for all poses.
+    pub fn set_pose(&mut self, object: &Object) {
+        for n in 0..self.levels.len() {
+            let (finer, rest) = self.levels.split_at_mut(n);
+            rest[0].set_pose(object, finer.last());
         }
     }
 
@@ -148,35 +171,53 @@ impl HeatFlow {
 impl Level {
     fn new(
         object: &Object,
-        atlas: &Atlas,
-        finer: Option<(&Atlas, &[f32])>,
-        (texel_mm, usual): (f32, f32),
-        times_mm2: &[f32],
+        atlas: Atlas,
+        finer: Option<&Level>,
+        (texel_mm, usual_conductivity): (f32, f32),
+        times_mm2: Vec<f32>,
     ) -> Self {
-        let shore = Shore::new(object, atlas);
+        let shore = Shore::new(object, &atlas);
         let layout = Layout::new(object, &shore);
-        let metrics = metrics(object, atlas.size, texel_mm);
-        let of_texels = metrics_of_texels(object, atlas, &metrics);
-        let halving = finer.map(|(fine, areas_mm2)| Halving::new(fine, areas_mm2, &shore, &layout));
-        let areas_mm2 = halving.as_ref().map(|halving| halving.areas_mm2.as_slice());
-        let exchange = Exchange::new(object, &layout, (&metrics, &of_texels), areas_mm2, texel_mm);
-        let of = |&time: &f32| {
-            coefficients(
-                f64::from(time),
-                f64::from(exchange.fastest_rate_per_mm2),
-                f64::from(texel_mm / usual.sqrt()),
-            )
+        let halving =
+            finer.map(|finer| Halving::new(&finer.atlas, &finer.exchange.areas_mm2, &shore, &layout));
+        let exchange = Exchange::new(object, &atlas, &layout, halving.as_ref(), texel_mm);
+        let mut level = Self {
+            atlas,
+            layout,
+            exchange,
+            halving,
+            times: Vec::new(),
+            times_mm2,
+            texel_mm,
+            usual_conductivity,
         };
-        let times = times_mm2.iter().map(of).collect();
-        Self { charts: Arc::clone(&atlas.charts), exchange, padding: layout.padding, halving, times }
+        level.times = level.coefficients();
+        level
+    }
+
+    fn coefficients(&self) -> Vec<Vec<f32>> {
+        let rate = f64::from(self.exchange.fastest_rate_per_mm2);
+        let texel_mm = f64::from(self.texel_mm / self.usual_conductivity.sqrt());
+        self.times_mm2.iter().map(|&time| coefficients(f64::from(time), rate, texel_mm)).collect()
+    }
+
+    fn set_pose(&mut self, object: &Object, finer: Option<&Level>) {
+        if let (Some(halving), Some(finer)) = (&mut self.halving, finer) {
+            halving.set_areas(&finer.exchange.areas_mm2);
+        }
+        let laid_per_mm2 = self.exchange.fastest_rate_per_mm2;
+        self.exchange =
+            Exchange::new(object, &self.atlas, &self.layout, self.halving.as_ref(), self.texel_mm);
+        assert!(laid_per_mm2 >= self.exchange.limit_per_mm2, "stages are laid for all poses");
+        self.exchange.fastest_rate_per_mm2 = laid_per_mm2;
     }
 
     /// What is beyond the edges of charts is what is across the seam, for those who read there.
     fn padded<L: Light>(&self, mut map: Vec<L>) -> Vec<L> {
         let read =
             |read: &Read| read.iter().fold(L::default(), |sum, &(t, w)| sum + map[t as usize].times(w));
-        let filled: Vec<L> = self.padding.iter().map(|(_, from)| read(from)).collect();
-        self.padding.iter().zip(filled).for_each(|((texel, _), light)| map[*texel as usize] = light);
+        let filled: Vec<L> = self.layout.padding.iter().map(|(_, from)| read(from)).collect();
+        self.layout.padding.iter().zip(filled).for_each(|((texel, _), light)| map[*texel as usize] = light);
         map
     }
 
@@ -184,8 +225,8 @@ impl Level {
     fn flown_back<L: Light>(&self, time: &[f32], map: &[L]) -> Vec<L> {
         let mut map = map.to_vec();
         let taken: Vec<L> =
-            self.padding.iter().map(|(texel, _)| std::mem::take(&mut map[*texel as usize])).collect();
-        for ((_, read), light) in self.padding.iter().zip(taken) {
+            self.layout.padding.iter().map(|(texel, _)| std::mem::take(&mut map[*texel as usize])).collect();
+        for ((_, read), light) in self.layout.padding.iter().zip(taken) {
             read.iter().for_each(|&(t, w)| map[t as usize] = map[t as usize] + light.times(w));
         }
         let per_area = &self.exchange.inverse_areas_per_mm2;
@@ -220,7 +261,7 @@ impl DiffusionOperator for HeatFlow {
         for own in &self.levels {
             for _ in &own.times {
                 let layers: Vec<Vec<Vec4>> = by_layer.iter_mut().filter_map(Iterator::next).collect();
-                levels.push(level(&own.charts, Arc::new(layers)));
+                levels.push(level(&own.atlas.charts, Arc::new(layers)));
             }
         }
         Diffused { levels }

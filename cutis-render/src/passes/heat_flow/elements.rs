@@ -76,26 +76,19 @@ impl Element {
 
 /// All links of elements, each element as strong as the weakest of its texels lets it be. A gap has all texels of its cells: it is
 /// never stronger than they are, and together they can only take energy from the slopes of light.
-pub fn rows(elements: &[Element], pace: &[f32]) -> Rows {
-    let mut links: Vec<Vec<(u32, f32)>> = vec![Vec::new(); pace.len()];
-    for Element { links: own } in elements {
-        let weakest = own.iter().map(|&(i, j, _)| pace[i as usize].min(pace[j as usize])).fold(1.0, f32::min);
-        for &(i, j, strength) in own {
-            // Only one of both directions is added up; the other one is its copy.
-            let row = &mut links[i as usize];
-            match row.iter_mut().find(|(other, _)| *other == j) {
-                Some((_, sum)) => *sum += weakest * strength,
-                None => row.push((j, weakest * strength)),
-            }
-        }
-    }
-    mirrored(&links)
-}
-
-fn mirrored(upper: &[Vec<(u32, f32)>]) -> Rows {
-    let mut all: Vec<(u32, u32, f32)> = Vec::new();
-    for (i, row) in upper.iter().enumerate() {
-        all.extend(row.iter().flat_map(|&(j, link)| [(i as u32, j, link), (j, i as u32, link)]));
-    }
-    Rows::new(all)
+pub fn rows(elements: &[Element], pace: impl Fn(u32) -> f32 + Sync) -> Rows {
+    let weakened = |Element { links }: &Element| {
+        let weakest = links.iter().map(|&(i, j, _)| pace(i).min(pace(j))).fold(1.0, f32::min);
+        links.iter().map(|&(i, j, strength)| (i, j, weakest * strength)).collect::<Vec<_>>()
+    };
+    let mut upper: Vec<(u32, u32, f32)> = elements.par_iter().flat_map_iter(weakened).collect();
+    // One order for all that is added up, so that the sums are the same in every run.
+    upper.par_sort_by_key(|&(i, j, _)| (i, j));
+    upper.dedup_by(|more, kept| {
+        let same = (more.0, more.1) == (kept.0, kept.1);
+        kept.2 += if same { more.2 } else { 0.0 };
+        same
+    });
+    // Only one of both directions is added up; the other one is its copy.
+    Rows::new(upper.into_iter().flat_map(|(i, j, link)| [(i, j, link), (j, i, link)]).collect())
 }

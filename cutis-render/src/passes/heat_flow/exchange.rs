@@ -15,6 +15,7 @@ use super::squares::Squares;
 use crate::passes::atlas::Atlas;
 use cutis_scene::Object;
 use rayon::prelude::*;
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// No wave may fall faster than this by the area of a usual texel: thin strips at the edges of charts would set the pace for all
@@ -107,8 +108,9 @@ impl Exchange {
             squares.slow_down(&areas_mm2, limit_per_mm2);
         }
         let strengths = squares.strengths();
-        let all = rows(&elements, &vec![1.0; size * size]);
-        let rows = rows(&elements, &pace(&all, &areas_mm2, &strengths, limit_per_mm2));
+        let all = rows(&elements, |_| 1.0);
+        let pace = pace(&all, &areas_mm2, &strengths, limit_per_mm2);
+        let rows = rows(&elements, |texel| pace.get(&texel).copied().unwrap_or(1.0));
         let fastest_rate_per_mm2 = bound_of_rates(&rows, &inverse_areas_per_mm2, strengths);
         Self {
             size,
@@ -123,15 +125,20 @@ impl Exchange {
     }
 }
 
-/// What every texel may keep of its links at the edges, so that its waves fall no faster than they may: a part of 1.
-fn pace(rows: &Rows, areas_mm2: &[f32], strengths: &[f32], fastest_rate_per_mm2: f32) -> Vec<f32> {
-    let mut part = vec![1.0f32; areas_mm2.len()];
-    for (texel, links) in rows.iter() {
+/// What texels may keep of their links at the edges, so that their waves fall no faster than they may: a part of 1, where it is
+/// less.
+fn pace(
+    rows: &Rows,
+    areas_mm2: &[f32],
+    strengths: &[f32],
+    fastest_rate_per_mm2: f32,
+) -> HashMap<u32, f32> {
+    let part = |(texel, links): (usize, &[(u32, f32)])| {
         let outer = outer_strength(links);
         let most = (fastest_rate_per_mm2 * areas_mm2[texel] - strengths[texel]).max(0.0);
-        part[texel] = if outer > most { most / outer } else { 1.0 };
-    }
-    part
+        (outer > most).then(|| (texel as u32, most / outer))
+    };
+    rows.iter().filter_map(part).collect()
 }
 
 /// What links to further texels make of a wave at most: twice their sum (Gershgorin 1931).

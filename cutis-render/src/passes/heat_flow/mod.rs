@@ -20,6 +20,8 @@ mod row;
 pub mod rows;
 mod seam_edges;
 pub mod shore;
+mod stencil;
+mod sweep;
 mod walk;
 
 use crate::passes::atlas::{Atlas, ChartMap};

@@ -81,6 +81,7 @@ fn turn_inner<L: Light>(
             + (under[x] - light).times(below[x][2])
             + (under[x + 2] - light).times(below[x + 2][3]);
         let flow = beside + over + under;
-        row[x] = recurrence.still(light, row[x]) + flow.times(inverse_areas_per_mm2[x] * speed);
+        // The product of both factors in 32 bits would be rounded, and the transpose only near to one.
+        row[x] = recurrence.still(light, row[x]) + flow.times(inverse_areas_per_mm2[x]).times(speed);
     }
 }

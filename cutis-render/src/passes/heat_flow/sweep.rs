@@ -199,6 +199,6 @@ fn add_edges<L: Light>(exchange: &Exchange, flows: &[L], recurrence: Recurrence,
     let (here, speed) = (begin(y)..begin(y + 1), recurrence.speed(exchange));
     for (&texel, flow) in texels[here.clone()].iter().zip(&flows[here]) {
         let x = texel as usize - y * size;
-        row[x] = row[x] + flow.times(exchange.inverse_areas_per_mm2[texel as usize] * speed);
+        row[x] = row[x] + flow.times(exchange.inverse_areas_per_mm2[texel as usize]).times(speed);
     }
 }

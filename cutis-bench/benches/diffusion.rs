@@ -1,8 +1,8 @@
-//! The separable blur against what memory alone costs: as many plain copies of the texture as a kernel of six
-//! Gaussians has blurs, two for each Gaussian.
+//! The separable blur and heat flow against what memory alone costs: as many plain copies of the texture as a kernel of
+//! six Gaussians has blurs, two for each Gaussian.
 //!
 //! The surface is a flat patch, one chart over the whole texture but for a margin. Texels measure the same at every
-//! size, so that the blur takes the same steps and the trend shows the memory.
+//! size, so that the blur takes the same steps and the trend shows the memory. Links of heat flow are made beforehand.
 #![allow(missing_docs, reason = "criterion's macros make public functions")]
 
 mod common;
@@ -14,6 +14,7 @@ use cutis_optics::presets;
 use cutis_render::passes::atlas::{Atlas, ChartMap, NO_CHART};
 use cutis_render::passes::blur::Fields;
 use cutis_render::passes::diffusion::{Diffused, DiffusionOperator, Separable};
+use cutis_render::passes::heat_flow::{HeatFlow, Level};
 use cutis_render::passes::stretch::stretch_mm_per_texel;
 use cutis_render::{CpuRenderer, Renderer, Silent};
 use cutis_scene::{Material, Mesh, Object};
@@ -33,6 +34,10 @@ const TEXEL_MM: f32 = 0.3;
 const MARGIN_TEXELS: f32 = 4.0;
 /// Quads along a side of the patch; in one quad alone the diagonal would suffer from rounding.
 const CELLS: u32 = 64;
+/// Bytes of a texel of light.
+const LIGHT_BYTES: usize = size_of::<Vec4>();
+/// Bytes of a texel's links and area.
+const LINK_BYTES: usize = size_of::<[f32; 4]>() + size_of::<f32>();
 /// Timed runs of which the report takes the median; odd, so that there is a middle one.
 const RUNS: usize = 7;
 
@@ -42,6 +47,7 @@ struct Patch {
     charts: Arc<ChartMap>,
     fields: Fields,
     variances_mm2: Vec<f32>,
+    heat_flow: HeatFlow,
 }
 
 impl Patch {
@@ -49,12 +55,14 @@ impl Patch {
         let object = Object::new("patch", mesh(size), Material::default());
         let atlas = Atlas::new(&object, size);
         let stretch_mm = stretch_mm_per_texel(&object, &atlas);
+        let variances_mm2 = skin_variances_mm2();
+        let heat_flow = HeatFlow::new(&object, &atlas, &stretch_mm, &variances_mm2);
         let fields = Fields::new(vec![irradiance(&atlas.charts)], stretch_mm);
-        Self { size, charts: atlas.charts, fields, variances_mm2: skin_variances_mm2() }
+        Self { size, charts: atlas.charts, fields, variances_mm2, heat_flow }
     }
 
-    fn diffuse(&self, fields: Fields) -> Diffused {
-        Separable.diffuse(Arc::clone(&self.charts), fields, &self.variances_mm2, &Silent)
+    fn diffuse(&self, operator: &dyn DiffusionOperator, fields: Fields) -> Diffused {
+        operator.diffuse(Arc::clone(&self.charts), fields, &self.variances_mm2, &Silent)
     }
 
     /// The plain copies, row by row as the blur writes.
@@ -109,35 +117,66 @@ fn diffusion(criterion: &mut Criterion) {
         let mut target = patch.fields.layers[0].clone();
         group.throughput(Throughput::Elements((size * size) as u64));
         group.bench_function(BenchmarkId::new("copies", size), |b| b.iter(|| patch.copy_to(&mut target)));
-        group.bench_function(BenchmarkId::new("separable", size), |b| {
-            b.iter_batched(
-                || patch.fields.clone(),
-                |fields| patch.diffuse(fields),
-                BatchSize::LargeInput, // one input per batch below a thousand iterations
-            );
-        });
+        let operators: [(&str, &dyn DiffusionOperator); 2] =
+            [("separable", &Separable), ("heat flow", &patch.heat_flow)];
+        for (name, operator) in operators {
+            group.bench_function(BenchmarkId::new(name, size), |b| {
+                b.iter_batched(
+                    || patch.fields.clone(),
+                    |fields| patch.diffuse(operator, fields),
+                    BatchSize::LargeInput, // one input per batch below a thousand iterations
+                );
+            });
+        }
     }
     group.finish();
 }
 
-/// Medians of both, s.
+/// Bytes that the rows of polynomials of a level must read and write: links of covered texels once, and maps of light, two
+/// polynomials at a time. Those two are read, two others are written, and sums are read and written, but for the
+/// first time. Edges of charts, halvings and copies are not counted.
+fn moved_bytes(level: &Level) -> usize {
+    let exchange = &level.exchange;
+    let covered: usize = exchange.runs.iter().flatten().map(ExactSizeIterator::len).sum();
+    let most = level.times.iter().map(Vec::len).max().unwrap_or(0);
+    let of_sweep = |k: usize| {
+        let sums = level.times.iter().filter(|time| k < time.len()).count();
+        let sum_maps = if k == 0 { level.times.len() } else { 2 * sums };
+        match most - k {
+            1 => (1 + sum_maps) * LIGHT_BYTES,
+            2 => (3 + sum_maps) * LIGHT_BYTES + LINK_BYTES,
+            _ => (4 + sum_maps) * LIGHT_BYTES + LINK_BYTES,
+        }
+    };
+    covered * (0..most).step_by(2).map(of_sweep).sum::<usize>()
+}
+
+/// Medians of all, s.
 struct Medians {
     copies_s: f64,
     separable_s: f64,
+    heat_flow_s: f64,
 }
 
 impl Medians {
-    /// Both in turn, so that a machine that grows slower is so for both. The first of each goes untimed: it meets
+    /// All in turn, so that a machine that grows slower is so for all. The first of each goes untimed: it meets
     /// memory that was never touched.
     fn measure(patch: &Patch) -> Self {
         let mut target = patch.fields.layers[0].clone();
-        let (mut copies_s, mut separable_s) = (Vec::new(), Vec::new());
+        let (mut copies_s, mut separable_s, mut heat_flow_s) = (Vec::new(), Vec::new(), Vec::new());
         for _ in 0..=RUNS {
             copies_s.push(seconds(|| patch.copy_to(&mut target)));
             let fields = patch.fields.clone();
-            separable_s.push(seconds(|| patch.diffuse(fields)));
+            separable_s.push(seconds(|| patch.diffuse(&Separable, fields)));
+            let fields = patch.fields.clone();
+            heat_flow_s.push(seconds(|| patch.diffuse(&patch.heat_flow, fields)));
         }
-        Self { copies_s: median(&mut copies_s[1..]), separable_s: median(&mut separable_s[1..]) }
+        let of = |times_s: &mut [f64]| median(&mut times_s[1..]);
+        Self {
+            copies_s: of(&mut copies_s),
+            separable_s: of(&mut separable_s),
+            heat_flow_s: of(&mut heat_flow_s),
+        }
     }
 
     fn ratio(&self) -> f64 {
@@ -159,21 +198,68 @@ fn median(times_s: &mut [f64]) -> f64 {
     times_s[times_s.len() / 2]
 }
 
-/// The ratio at every size as a table, and that of the largest as the last line.
+/// The ratios at every size as tables, and those of the largest as the last lines.
 fn ratios() {
     if !common::reports_wanted() {
         return;
     }
     eprintln!("\ncpu: {}, median of {RUNS} runs", CpuRenderer.adapter());
     eprintln!("\n| texels | {COPIES} copies, s | separable, s | ratio |\n|---|---|---|---|");
+    let mut flows = Vec::new();
     let mut largest = 0.0;
     for size in SIZES {
-        let medians = Medians::measure(&Patch::new(size));
-        let Medians { copies_s, separable_s } = medians;
+        let patch = Patch::new(size);
+        let medians = Medians::measure(&patch);
         largest = medians.ratio();
-        eprintln!("| {size}² | {copies_s:.4} | {separable_s:.4} | {largest:.2} |");
+        eprintln!("| {size}² | {:.4} | {:.4} | {largest:.2} |", medians.copies_s, medians.separable_s);
+        flows.push(FlowReport::new(&patch, &medians));
     }
+    eprintln!(
+        "\n| texels | polynomials | heat flow, s | by separable | GB/s | copies, GB/s |\n|---|---|---|---|---|---|"
+    );
+    flows.iter().for_each(|flow| eprintln!("{}", flow.line()));
     eprintln!("\nseparable / {COPIES} copies = {largest:.2}");
+}
+
+/// What is told of heat flow.
+struct FlowReport {
+    size: usize,
+    /// Polynomials of each level, the finest first.
+    polynomials: Vec<usize>,
+    heat_flow_s: f64,
+    by_separable: f64,
+    gb_per_s: f64,
+    copies_gb_per_s: f64,
+}
+
+impl FlowReport {
+    fn new(patch: &Patch, medians: &Medians) -> Self {
+        let levels = &patch.heat_flow.levels;
+        let most = |level: &Level| level.times.iter().map(Vec::len).max().unwrap_or(0);
+        let moved_bytes: usize = levels.iter().map(moved_bytes).sum();
+        let copied_bytes = 2 * COPIES * patch.size * patch.size * LIGHT_BYTES;
+        Self {
+            size: patch.size,
+            polynomials: levels.iter().map(most).collect(),
+            heat_flow_s: medians.heat_flow_s,
+            by_separable: medians.heat_flow_s / medians.separable_s,
+            gb_per_s: moved_bytes as f64 / medians.heat_flow_s * 1e-9,
+            copies_gb_per_s: copied_bytes as f64 / medians.copies_s * 1e-9,
+        }
+    }
+
+    fn line(&self) -> String {
+        let polynomials: Vec<String> = self.polynomials.iter().map(usize::to_string).collect();
+        format!(
+            "| {}² | {} | {:.4} | {:.2} | {:.1} | {:.1} |",
+            self.size,
+            polynomials.join(" + "),
+            self.heat_flow_s,
+            self.by_separable,
+            self.gb_per_s,
+            self.copies_gb_per_s
+        )
+    }
 }
 
 criterion_group!(benches, diffusion);

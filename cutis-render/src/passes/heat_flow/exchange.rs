@@ -155,7 +155,8 @@ fn bound_of_rates(rows: &Rows, inverse_areas_per_mm2: &[f32], mut strengths: Vec
     rates.reduce(|| f32::MIN_POSITIVE, f32::max)
 }
 
-fn runs_of(areas_mm2: &[f32]) -> Vec<Range<usize>> {
+/// Where areas of a row are not 0.
+pub(super) fn runs_of(areas_mm2: &[f32]) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for x in (0..areas_mm2.len()).filter(|&x| areas_mm2[x] > 0.0) {
         match runs.last_mut() {

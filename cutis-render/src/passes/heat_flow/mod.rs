@@ -21,6 +21,8 @@ pub mod rows;
 mod seam_edges;
 pub mod shore;
 mod squares;
+mod stencil;
+mod sweep;
 mod walk;
 
 use crate::passes::atlas::{Atlas, ChartMap};
@@ -135,13 +137,13 @@ impl HeatFlow {
 
     /// Light on its own map to light after every variance, on the maps of their levels.
     pub fn flow<L: Light>(&self, light: &[L]) -> Vec<Vec<L>> {
-        let mut light = light.to_vec();
+        let mut halved: Option<Vec<L>> = None;
         let mut all = Vec::new();
         for level in &self.levels {
             if let Some(halving) = &level.halving {
-                light = halving.halved(&light);
+                halved = Some(halving.halved(halved.as_deref().unwrap_or(light)));
             }
-            let flown = flown(&level.exchange, &level.times, &light);
+            let flown = flown(&level.exchange, &level.times, halved.as_deref().unwrap_or(light));
             all.extend(flown.into_iter().map(|map| level.padded(map)));
         }
         all

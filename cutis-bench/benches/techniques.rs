@@ -104,7 +104,7 @@ fn on_the_processor(scene: &Scene, settings: &Settings) -> (f64, f64) {
         (start.elapsed(), frame)
     };
     let (whole, frame) = (0..3).map(|_| timed()).min_by_key(|(time, _)| *time).expect("three were drawn");
-    let own = ["blur", "transmission", "irradiance image", "resolve"];
+    let own = ["blur", "links", "heat flow", "transmission", "irradiance image", "resolve"];
     let own: Duration =
         frame.passes.iter().filter(|pass| own.contains(&pass.name.as_str())).map(|pass| pass.time).sum();
     (whole.as_secs_f64() * 1e3, own.as_secs_f64() * 1e3)

@@ -4,7 +4,7 @@ mod common;
 
 use common::{patch, patch_under_a_spot, renderer};
 use cutis_gpu::cost::{Cost, by_pass, total};
-use cutis_render::{Settings, Silent};
+use cutis_render::{Diffusion, Settings, Silent};
 
 /// Texels of the irradiance, and of the maps of the light: the smallest there is.
 const SIZE: u64 = 256;
@@ -15,6 +15,7 @@ fn settings() -> Settings {
         height: 16,
         samples_per_pixel: 4,
         irradiance_size: SIZE as u32,
+        diffusion: Diffusion::Separable,
         ..Settings::default()
     }
 }

@@ -87,7 +87,8 @@ pub struct RenderArgs {
     /// of lights
     #[arg(long, value_name = "PAPER", value_parser = names(Paper::ALL))]
     pub as_in: Option<String>,
-    /// How light spreads under the surface; none: the surface is opaque; heat-flow: from texel to texel, across seams
+    /// How light spreads under the surface; heat-flow: from texel to texel, across seams; separable: blurs along u and v as
+    /// d'Eon et al. 2007 have them; none: the surface is opaque
     #[arg(long, value_name = "NAME", default_value_t = Settings::default().diffusion.to_string(), value_parser = names(DIFFUSIONS))]
     pub diffusion: String,
     /// Where it is computed; auto: on a graphics processor if there is one, else on the processor; gpu: on any graphics

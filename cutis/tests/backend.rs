@@ -63,7 +63,8 @@ fn gpu_takes_whatever_adapter_there_is_and_names_it() {
     assert!(json["adapter"].as_str().is_some_and(|name| !name.is_empty()));
     let passes: Vec<_> =
         json["passes"].as_array().expect("a list").iter().map(|p| p["name"].clone()).collect();
-    for name in ["atlas", "shadow map", "shadows", "irradiance", "blur", "gather", "transmission", "resolve"]
+    for name in
+        ["atlas", "shadow map", "shadows", "irradiance", "heat flow", "gather", "transmission", "resolve"]
     {
         assert!(passes.iter().any(|pass| pass == name), "{name} of {passes:?}");
     }

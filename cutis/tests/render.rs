@@ -85,7 +85,7 @@ fn the_json_object_is_complete_and_alone() {
     let total: f64 = passes.iter().map(|pass| pass["milliseconds"].as_f64().expect("a number")).sum();
     let wall = json["wall_seconds"].as_f64().expect("a number");
     assert!(wall > 0.0 && total <= wall * 1e3, "{total} ms of {wall} s");
-    for name in ["read", "irradiance", "blur", "resolve", "bloom", "tone map", "write"] {
+    for name in ["read", "irradiance", "links", "heat flow", "resolve", "bloom", "tone map", "write"] {
         assert!(
             passes.iter().any(|pass| pass["name"].as_str().is_some_and(|n| n.starts_with(name))),
             "{name}"

@@ -20,7 +20,7 @@ use crate::passes::thin_parts::come_through;
 use crate::passes::transmission::{Bodies, Transmission};
 use crate::prepare::FilteredEnvironment;
 use crate::prepare::kernel::kernel_of;
-use crate::settings::{Aov, AovSpace, Settings, TechniqueName};
+use crate::settings::{Aov, AovSpace, Diffusion, Settings, TechniqueName};
 use crate::technique::{Inside, depth_absorption, image_space, texture_blur, texture_space, wrap};
 use crate::{PassTime, Progress, RenderError};
 use clock::Clock;
@@ -177,12 +177,20 @@ fn spread(
     } else {
         None
     };
-    let operator = clock.time("kernel", || operator(settings, object, maps, through))?;
+    let [made, spread] = names(settings);
+    let operator = clock.time(made, || operator(settings, object, maps, through))?;
     let layers = Arc::clone(&maps.diffused.levels[0].layers);
     let fields = Fields { layers, stretch_mm: maps.stretch_mm.clone() };
     let charts = Arc::clone(&maps.atlas.charts);
     let variances_mm2 = &maps.kernel.variances_mm2;
-    Ok(clock.time("blur", || operator.diffuse(charts, fields, variances_mm2, progress)))
+    Ok(clock.time(spread, || operator.diffuse(charts, fields, variances_mm2, progress)))
+}
+
+/// What making the operator is called, and spreading light by it.
+fn names(settings: &Settings) -> [&'static str; 2] {
+    let flows =
+        settings.light_inside() == TechniqueName::TextureSpace && settings.diffusion == Diffusion::HeatFlow;
+    if flows { ["links", "heat flow"] } else { ["kernel", "blur"] }
 }
 
 /// Whether light that comes through thin parts is spread with what falls in.

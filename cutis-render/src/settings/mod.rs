@@ -58,7 +58,7 @@ impl Default for Settings {
         Self {
             technique: TechniqueName::TextureSpace,
             techniques: TechniqueSettings::default(),
-            diffusion: Diffusion::Separable,
+            diffusion: Diffusion::HeatFlow,
             width: 1024,
             height: 1024,
             samples_per_pixel: 4,

@@ -96,12 +96,13 @@ impl Job {
     }
 }
 
-/// Every technique but the truth itself, and the opaque surface; only those that are named, if some are, with numbers of their own
+/// Every technique but the truth itself, the blur of d'Eon, Luebke & Enderton 2007, and the opaque surface; only those that are named, if some are, with numbers of their own
 /// where they are given.
 fn entries(only: &[String]) -> Result<Vec<Entry>> {
     let judged = TechniqueName::ALL.iter().filter(|technique| **technique != TechniqueName::Truth);
-    let opaque = Entry { diffusion: Diffusion::None, ..Entry::usual(TechniqueName::TextureSpace) };
-    let all: Vec<_> = judged.map(|technique| Entry::usual(*technique)).chain([opaque]).collect();
+    let others = [Diffusion::Separable, Diffusion::None];
+    let others = others.map(|diffusion| Entry { diffusion, ..Entry::usual(TechniqueName::TextureSpace) });
+    let all: Vec<_> = judged.map(|technique| Entry::usual(*technique)).chain(others).collect();
     let only: Vec<_> = only.iter().flat_map(|list| entries_of(list)).collect();
     if only.is_empty() {
         return Ok(all);
@@ -134,8 +135,15 @@ mod tests {
     #[test]
     fn the_truth_is_not_judged_and_all_else_is() {
         let names: Vec<_> = entries(&[]).expect("all").iter().map(Entry::to_string).collect();
-        assert_eq!(names.len(), TechniqueName::ALL.len(), "one less, and the opaque surface");
-        assert!(!names.contains(&"truth".to_owned()) && names.contains(&"texture-space/none".to_owned()));
+        assert_eq!(
+            names.len(),
+            TechniqueName::ALL.len() + 1,
+            "one less, the separable blur, the opaque surface"
+        );
+        let is_judged = |name: &str| names.iter().any(|known| known == name);
+        assert!(
+            !is_judged("truth") && is_judged("texture-space/separable") && is_judged("texture-space/none")
+        );
         let of = |list: &str| entries(&[list.to_owned()]);
         let own = of("image-space:jacobian=off,wrap:scatter-colour=0.1,0,0").expect("are known");
         assert_eq!(own.iter().map(|entry| entry.flags.len()).collect::<Vec<_>>(), [1, 1]);

@@ -4,14 +4,14 @@ use super::cells::Cell;
 use super::exchange::Layout;
 use super::gaps::{Gap, Jump};
 use super::metric::Metric;
-use super::rows::Rows;
 use cutis_scene::Object;
 use glam::{Mat4, Vec4};
 use rayon::prelude::*;
 
 /// What a cell or a gap links, of every pair of texels once.
 pub struct Element {
-    links: Vec<(u32, u32, f32)>,
+    /// Both texels, the lower one first, and the strength.
+    pub links: Vec<(u32, u32, f32)>,
 }
 
 /// Of cut cells and gaps; their areas are added.
@@ -72,23 +72,4 @@ impl Element {
             None => self.links.push((i, j, strength)),
         }
     }
-}
-
-/// All links of elements, each element as strong as the weakest of its texels lets it be. A gap has all texels of its cells: it is
-/// never stronger than they are, and together they can only take energy from the slopes of light.
-pub fn rows(elements: &[Element], pace: impl Fn(u32) -> f32 + Sync) -> Rows {
-    let weakened = |Element { links }: &Element| {
-        let weakest = links.iter().map(|&(i, j, _)| pace(i).min(pace(j))).fold(1.0, f32::min);
-        links.iter().map(|&(i, j, strength)| (i, j, weakest * strength)).collect::<Vec<_>>()
-    };
-    let mut upper: Vec<(u32, u32, f32)> = elements.par_iter().flat_map_iter(weakened).collect();
-    // One order for all that is added up, so that the sums are the same in every run.
-    upper.par_sort_by_key(|&(i, j, _)| (i, j));
-    upper.dedup_by(|more, kept| {
-        let same = (more.0, more.1) == (kept.0, kept.1);
-        kept.2 += if same { more.2 } else { 0.0 };
-        same
-    });
-    // Only one of both directions is added up; the other one is its copy.
-    Rows::new(upper.into_iter().flat_map(|(i, j, link)| [(i, j, link), (j, i, link)]).collect())
 }

@@ -5,10 +5,11 @@
 
 use super::cells::{Cell, Cells};
 use super::coarse::Halving;
-use super::elements::{elements, rows};
+use super::elements::elements;
 use super::gaps::{Gap, gaps};
 use super::metric::{SMALLEST, best_conductivity, metrics, metrics_of_texels};
 use super::padding::padding;
+use super::pattern::Pattern;
 use super::rows::Rows;
 use super::shore::{Read, Shore};
 use super::squares::Squares;
@@ -17,6 +18,7 @@ use cutis_scene::Object;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::ops::Range;
+use std::sync::OnceLock;
 
 /// No wave may fall faster than this by the area of a usual texel: thin strips at the edges of charts would set the pace for all
 /// others. It is what squares of the narrowest texels reach.
@@ -40,6 +42,8 @@ pub struct Layout {
     pub padding: Vec<(u32, Read)>,
     /// The best that heat flows anywhere, by how it does in the medium itself.
     pub best_conductivity: f32,
+    /// Which texels cells and gaps link.
+    pattern: OnceLock<Pattern>,
 }
 
 /// All links, for one pose.
@@ -76,7 +80,7 @@ impl Layout {
         let cells = cells.all;
         let best_conductivity =
             cells.iter().map(Cell::conductivity).fold(best_conductivity(object, shore.atlas), f32::max);
-        Self { size, whole, cells, gaps, padding, best_conductivity }
+        Self { size, whole, cells, gaps, padding, best_conductivity, pattern: OnceLock::new() }
     }
 }
 
@@ -108,9 +112,10 @@ impl Exchange {
             squares.slow_down(&areas_mm2, limit_per_mm2);
         }
         let strengths = squares.strengths();
-        let all = rows(&elements, |_| 1.0);
+        let pattern = layout.pattern.get_or_init(|| Pattern::new(&elements));
+        let all = pattern.filled(&elements, |_| 1.0);
         let pace = pace(&all, &areas_mm2, &strengths, limit_per_mm2);
-        let rows = rows(&elements, |texel| pace.get(&texel).copied().unwrap_or(1.0));
+        let rows = pattern.filled(&elements, |texel| pace.get(&texel).copied().unwrap_or(1.0));
         let fastest_rate_per_mm2 = bound_of_rates(&rows, &inverse_areas_per_mm2, strengths);
         Self {
             size,
@@ -127,12 +132,7 @@ impl Exchange {
 
 /// What texels may keep of their links at the edges, so that their waves fall no faster than they may: a part of 1, where it is
 /// less.
-fn pace(
-    rows: &Rows,
-    areas_mm2: &[f32],
-    strengths: &[f32],
-    fastest_rate_per_mm2: f32,
-) -> HashMap<u32, f32> {
+fn pace(rows: &Rows, areas_mm2: &[f32], strengths: &[f32], fastest_rate_per_mm2: f32) -> HashMap<u32, f32> {
     let part = |(texel, links): (usize, &[(u32, f32)])| {
         let outer = outer_strength(links);
         let most = (fastest_rate_per_mm2 * areas_mm2[texel] - strengths[texel]).max(0.0);

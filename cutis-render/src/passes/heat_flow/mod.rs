@@ -16,6 +16,7 @@ pub mod exchange;
 mod gaps;
 mod metric;
 mod padding;
+mod pattern;
 mod row;
 pub mod rows;
 mod seam_edges;

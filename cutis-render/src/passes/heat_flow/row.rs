@@ -93,6 +93,7 @@ mod tests {
             runs: areas_mm2.chunks(SIZE).map(runs_of).collect(),
             areas_mm2,
             fastest_rate_per_mm2: FASTEST_RATE_PER_MM2,
+            limit_per_mm2: FASTEST_RATE_PER_MM2,
         }
     }
 

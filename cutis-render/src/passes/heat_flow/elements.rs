@@ -59,7 +59,8 @@ fn of_jump(jump: &Jump, part: f32) -> Element {
         for &(j, other_gap, other_flow) in &jump.terms[..n] {
             let strength =
                 part * (gap * other_flow + flow * other_gap) - jump.spring_per_mm * gap * other_gap;
-            element.add(i.min(j), i.max(j), jump.length_mm * strength);
+            // No texel comes twice in a jump.
+            element.links.push((i.min(j), i.max(j), jump.length_mm * strength));
         }
     }
     element

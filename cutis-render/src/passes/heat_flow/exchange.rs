@@ -112,7 +112,7 @@ impl Exchange {
             squares.slow_down(&areas_mm2, limit_per_mm2);
         }
         let strengths = squares.strengths();
-        let pattern = layout.pattern.get_or_init(|| Pattern::new(&elements));
+        let pattern = layout.pattern.get_or_init(|| Pattern::new(&elements, size * size));
         let all = pattern.filled(&elements, |_| 1.0);
         let pace = pace(&all, &areas_mm2, &strengths, limit_per_mm2);
         let rows = pattern.filled(&elements, |texel| pace.get(&texel).copied().unwrap_or(1.0));

@@ -15,19 +15,27 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// Of some elements.
-    pub fn new(elements: &[Element]) -> Self {
-        let pairs = elements.iter().flat_map(|element| &element.links);
-        let mut ends: Vec<(u32, u32, u32)> =
-            (0..).zip(pairs).flat_map(|(n, &(i, j, _))| [(i, j, 2 * n), (j, i, 2 * n + 1)]).collect();
-        ends.par_sort_unstable();
-        let mut places = vec![[0; 2]; ends.len() / 2];
-        let mut links: Vec<(u32, u32, f32)> = Vec::new();
-        for (texel, other, n) in ends {
-            if links.last().is_none_or(|&(t, o, _)| (t, o) != (texel, other)) {
-                links.push((texel, other, 0.0));
-            }
-            places[n as usize / 2][n as usize % 2] = links.len() as u32 - 1;
+    /// Of some elements on a map of so many texels.
+    pub fn new(elements: &[Element], texel_count: usize) -> Self {
+        let pairs = || elements.iter().flat_map(|element| element.links.iter().map(|&(i, j, _)| [i, j]));
+        let mut counts = vec![0u32; texel_count];
+        pairs().flatten().for_each(|texel| counts[texel as usize] += 1);
+        let linked = counts.iter().enumerate().filter(|(_, count)| **count > 0);
+        let mut rows: Vec<Row> =
+            linked.map(|(texel, &count)| Row::new(texel as u32, count as usize)).collect();
+        // From now on the number of a texel's row.
+        (0..).zip(&rows).for_each(|(n, row)| counts[row.texel as usize] = n);
+        for (n, [i, j]) in (0..).zip(pairs()) {
+            rows[counts[i as usize] as usize].ends.push((j, 2 * n));
+            rows[counts[j as usize] as usize].ends.push((i, 2 * n + 1));
+        }
+        rows.par_iter_mut().for_each(Row::merge);
+        let mut places = vec![[0; 2]; pairs().count()];
+        let mut links = Vec::new();
+        for Row { texel, ends, others } in &rows {
+            let first = links.len() as u32;
+            ends.iter().for_each(|&(place, n)| places[n as usize / 2][n as usize % 2] = first + place);
+            links.extend(others.iter().map(|&other| (*texel, other, 0.0)));
         }
         Self { rows: Rows::new(links), places }
     }
@@ -49,5 +57,31 @@ impl Pattern {
             places.into_iter().for_each(|place| rows.links[place as usize].1 += strength);
         }
         rows
+    }
+}
+
+/// A texel's row while it is found.
+struct Row {
+    texel: u32,
+    /// The texel at the other end of each of its links, then its place in the row; and which link of the elements that is, times
+    /// two, and in which direction.
+    ends: Vec<(u32, u32)>,
+    /// Those texels, each once.
+    others: Vec<u32>,
+}
+
+impl Row {
+    fn new(texel: u32, count: usize) -> Self {
+        Self { texel, ends: Vec::with_capacity(count), others: Vec::new() }
+    }
+
+    fn merge(&mut self) {
+        self.ends.sort_unstable();
+        for (other, _) in &mut self.ends {
+            if self.others.last() != Some(other) {
+                self.others.push(*other);
+            }
+            *other = self.others.len() as u32 - 1;
+        }
     }
 }

@@ -9,8 +9,7 @@ use cutis_gpu::cost::{by_pass, total};
 use cutis_gpu::{Adapters, GpuRenderer};
 use cutis_render::settings::Quality;
 use cutis_render::{CpuRenderer, PassTime, Renderer, Settings, Silent};
-use cutis_scene::{Light, ReadOptions, Scene, read_scene};
-use std::path::{Path, PathBuf};
+use cutis_scene::Scene;
 use std::time::{Duration, Instant};
 
 /// Frames of which the quickest is told: the first ones meet shaders that were never run.
@@ -25,27 +24,8 @@ fn low() -> Settings {
 const CARDS: [(&str, f64); 3] =
     [("GeForce RTX 4090", 1008.0), ("GeForce RTX 3080", 760.0), ("GeForce RTX 3060", 360.0)];
 
-/// The scan under one point light without extent and the environment; none without the assets.
-fn real_head() -> Option<Scene> {
-    let given = std::env::var_os("CUTIS_ASSETS").filter(|value| !value.is_empty()).map(PathBuf::from);
-    let usual = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/assets");
-    let folder = given.unwrap_or_else(usual);
-    if !folder.join("lee_perry_smith").is_dir() {
-        eprintln!("no lee_perry_smith/ in CUTIS_ASSETS: nothing is measured");
-        return None;
-    }
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/lee_perry_smith.toml");
-    let options = ReadOptions { assets_folder: Some(folder), ..ReadOptions::default() };
-    let mut scene = read_scene(&path, &options).expect("the scene of the scan is valid");
-    scene.lights.truncate(1);
-    if let Some(Light::Point { radius_mm, .. }) = scene.lights.first_mut() {
-        *radius_mm = 0.0;
-    }
-    Some(scene)
-}
-
 fn frames(criterion: &mut Criterion) {
-    let Some(scene) = real_head() else { return };
+    let Some(scene) = common::real_head() else { return };
     let mut group = criterion.benchmark_group("gpu");
     group.sample_size(10).sampling_mode(SamplingMode::Flat);
     group.warm_up_time(Duration::from_secs(1)).measurement_time(Duration::from_secs(5));
@@ -69,7 +49,7 @@ fn tables() {
     if !common::reports_wanted() {
         return;
     }
-    let Some(scene) = real_head() else { return };
+    let Some(scene) = common::real_head() else { return };
     let start = Instant::now();
     let frame = CpuRenderer.render(&scene, &low(), &Silent).expect("draws");
     table(&format!("cpu, {}", CpuRenderer.adapter()), start.elapsed(), &frame.passes);

@@ -16,6 +16,8 @@ const DEPTH: usize = 12;
 const NEGLIGIBLE: f32 = 3e-3;
 /// Texels with so many times the area tell less of a place beyond a seam than what is on this side.
 const MUCH_LARGER: f32 = 4.0;
+/// Most texels of a read: at the poles of a ball dozens take part, the rest of them with next to nothing.
+const MOST_TEXELS: usize = 8;
 /// Least weight of texels that a read needs.
 const LEAST_WEIGHT: f32 = 1e-3;
 /// Texels around one, nearest first.
@@ -160,6 +162,9 @@ impl<'a> Shore<'a> {
     pub fn read(&self, arrival: &Arrival) -> Option<Read> {
         let mut read = Read::new();
         self.add(arrival, 1.0, 0, &mut read);
+        // By number where weights are equal, so that all runs leave out the same.
+        read.sort_by(|(one, a), (other, b)| b.total_cmp(a).then(one.cmp(other)));
+        read.truncate(MOST_TEXELS);
         let sum: f32 = read.iter().map(|(_, weight)| weight).sum();
         read.iter_mut().for_each(|(_, weight)| *weight /= sum);
         (sum > LEAST_WEIGHT).then_some(read)

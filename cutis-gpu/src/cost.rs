@@ -41,7 +41,7 @@ pub const TAPS: [(&str, u64); 41] = [
     ("halve", 9),
     ("exchange", 15),
     ("exchange_alone", 12),
-    ("add_up", 5),
+    ("add_up", 6),
     ("halve_heat", 32),
     ("keep_padding", 8),
     ("edge_exchange", 31),

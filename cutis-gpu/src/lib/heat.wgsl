@@ -10,18 +10,12 @@
 @group(0) @binding(13) var nearest: sampler;
 
 struct Stage {
-    /// What sums take of the polynomial that is known last …
-    parts: vec3f,
-    /// The next polynomial: so many times x of that one …
+    /// What each sum takes of the polynomial that is known last, and of those before it; nothing of all, where there is no sum.
+    parts: array<vec4f, 3>,
+    /// The next polynomial: so many times x of this one, less one time less of the one before.
     factor: f32,
-    /// … and of the one before.
-    parts_before: vec3f,
-    /// … less so much of the one before.
-    part: f32,
-    /// What they take of what they hold: 0 to begin with, then 1.
+    /// What sums take of what they hold: 0 to begin with, then 1.
     kept: f32,
-    /// Number of sums.
-    sums: u32,
     /// Width and height of the map, texels.
     size: u32,
     /// Another one for every stage.
@@ -59,5 +53,5 @@ fn next(at: Here, further: vec4f) -> vec4f {
     moved += known(at.uv + vec2f(-step, -step), at.now) * west.y;
     moved += known(at.uv + vec2f(0.0, -step), at.now) * west.z;
     moved += known(at.uv + vec2f(step, -step), at.now) * west.w;
-    return rounded(stage.factor * moved - stage.part * at.before, at.texel, stage.seed);
+    return rounded(stage.factor * moved - (stage.factor - 1.0) * at.before, at.texel, stage.seed);
 }

@@ -1,6 +1,6 @@
 //! What a level needs on the device: links, their sparse rows, and maps for polynomials and sums.
 
-use super::LIGHT;
+use super::{AT_ONCE, LIGHT};
 use crate::Gpu;
 use crate::map::{Map, View, half_bytes};
 use crate::pipeline::{Bound, Pipeline};
@@ -57,7 +57,7 @@ pub struct Fields {
     /// Where that is kept.
     pub kept: wgpu::Buffer,
     /// Polynomials, in turn.
-    pub turns: [Map; 3],
+    pub turns: [Map; AT_ONCE + 1],
     /// Where sums are in turn with their level.
     pub spare: Map,
 }

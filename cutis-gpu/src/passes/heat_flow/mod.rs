@@ -1,7 +1,7 @@
 //! Heat flow on the unrolled surface: cutis-render's `heat_flow`, whose links it uploads.
 //!
 //! A stage is one draw over the tiles of the charts, without branches, and one computation for the texels at their edges. Polynomials are kept in
-//! three maps in turn, sums in the levels and a spare map in turn. Two polynomials are added to a sum at once. Nothing is blended:
+//! five maps in turn, sums in the levels and a spare map in turn. Four polynomials are added to a sum at once. Nothing is blended:
 //! 16 bits hold what is wanted only if every stage rounds without a bias.
 
 mod fields;
@@ -28,24 +28,20 @@ use wgpu::TextureFormat as Format;
 
 /// Most sums that are drawn at once.
 const TOGETHER: usize = 3;
+/// Polynomials that are added to a sum at once.
+const AT_ONCE: usize = 4;
 const LIGHT: Format = Format::Rgba16Float;
 
 /// Numbers of a stage; their twin has the same name.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Stage {
-    /// What sums take of the polynomial that is known last …
-    pub parts: [f32; TOGETHER],
-    /// The next polynomial: so many times x of that one …
+    /// What each sum takes of the polynomial that is known last, and of those before it; nothing of all, where there is no sum.
+    pub parts: [[f32; AT_ONCE]; TOGETHER],
+    /// The next polynomial: so many times x of this one, less one time less of the one before.
     pub factor: f32,
-    /// … and of the one before.
-    pub parts_before: [f32; TOGETHER],
-    /// … less so much of the one before.
-    pub part: f32,
-    /// What they take of what they hold: 0 to begin with, then 1.
+    /// What sums take of what they hold: 0 to begin with, then 1.
     pub kept: f32,
-    /// Number of sums.
-    pub sums: u32,
     /// Width and height of the map, texels.
     pub size: u32,
     /// Another one for every stage.

@@ -1,7 +1,7 @@
 //! A row of polynomials: stage by stage from the light to the sums of every time.
 
 use super::fields::{Fields, points};
-use super::{HeatFlowPass, Stage, TOGETHER};
+use super::{AT_ONCE, HeatFlowPass, Stage, TOGETHER};
 use crate::Gpu;
 use crate::map::View;
 use crate::passes::over_charts;
@@ -27,50 +27,65 @@ struct Added<'a> {
     /// Where the sum is, and where it goes.
     from: &'a View,
     to: &'a View,
-    part: f32,
-    part_before: f32,
+    /// What it takes of the polynomial that is known last, and of those before it.
+    parts: [f32; AT_ONCE],
+    /// Whether there is something in it.
+    begun: bool,
 }
 
 impl<'a> Row<'a> {
     /// From a map of light to the sums of every time.
     pub fn steps(&self, light: &View, sums: &[&View], steps: &mut Vec<Step>) {
         let most = self.fields.times.iter().map(Vec::len).max().unwrap_or(0);
-        let turn = |k: usize| if k == 0 { light } else { self.fields.turns[k % 3].view() };
+        let turn = |k: usize| if k == 0 { light } else { self.fields.turns[k % (AT_ONCE + 1)].view() };
         for k in 0..most {
-            let (now, before) = (turn(k), turn(k.saturating_sub(1)));
             // Before the first there is none: what is bound is taken no times.
-            let bound_before = if k == 0 { Bound::Texels(before, 0) } else { Bound::Texture(before) };
+            let before =
+                |n: usize| if k >= n { Bound::Texture(turn(k - n)) } else { Bound::Texels(light, 0) };
             let added: Vec<Added> = (0..sums.len()).filter_map(|n| self.added(n, sums[n], k)).collect();
-            let (first, others) = added.split_at(added.len().min(TOGETHER));
-            let numbers = self.numbers(k, first);
-            let links = [
-                (4, Bound::Texture(self.fields.taken[0].view())),
-                (5, Bound::Texture(self.fields.taken[1].view())),
-            ];
-            let nearest = Bound::Sampler(&self.pass.nearest);
-            let polynomials = [(2, Bound::Texture(now)), (3, bound_before), (13, nearest)];
-            let bound = [&[(1, Bound::Buffer(&numbers))], &polynomials[..], &links[..]].concat();
+            // What begins reads nothing: it is drawn apart from what goes on.
+            let (begun, begins): (Vec<Added>, Vec<Added>) = added.into_iter().partition(|sum| sum.begun);
+            let mut groups: Vec<&[Added]> = begun.chunks(TOGETHER).chain(begins.chunks(TOGETHER)).collect();
+            let nearest = (13, Bound::Sampler(&self.pass.nearest));
+            let last_two = [(2, before(0)), (3, before(1)), nearest];
             if k + 1 < most {
-                let next = turn(k + 1);
-                let targets: Vec<&View> = [next].into_iter().chain(first.iter().map(|a| a.to)).collect();
-                let pipeline = match first.len() {
-                    0 => &self.pass.exchange_alone,
-                    n => &self.pass.exchange[n - 1],
-                };
-                let all = [&bound[..], &bound_sums(first)].concat();
-                steps.push(over_charts(self.gpu, pipeline, self.charts, &all, &targets, false));
-                steps.extend(self.exchange_at_edges(&numbers, [now, before, next]));
+                let with_it = if groups.is_empty() { &[] } else { groups.remove(0) };
+                self.exchange(k, with_it, (&last_two, [before(2), before(3)]), turn(k + 1), steps);
+                let numbers = self.numbers(k, &[]);
+                let before = if k == 0 { light } else { turn(k - 1) };
+                steps.extend(self.exchange_at_edges(&numbers, [turn(k), before, turn(k + 1)]));
             }
-            let alone = if k + 1 < most { others } else { &added[..] };
-            for sums in alone.chunks(TOGETHER) {
+            for sums in groups {
                 let numbers = self.numbers(k, sums);
-                let all = [&[(1, Bound::Buffer(&numbers))], &polynomials[..], &bound_sums(sums)].concat();
+                let all = [&[(1, Bound::Buffer(&numbers))], &last_two[..]].concat();
+                let all = [all, bound_sums(sums, [before(2), before(3)])].concat();
                 let targets: Vec<&View> = sums.iter().map(|a| a.to).collect();
                 let pipeline = &self.pass.add_up[sums.len() - 1];
                 steps.push(over_charts(self.gpu, pipeline, self.charts, &all, &targets, false));
             }
         }
         sums.iter().for_each(|sum| self.fill_padding(sum, steps));
+    }
+
+    /// The next polynomial, and some sums with those that are known.
+    fn exchange(
+        &self,
+        k: usize,
+        sums: &[Added],
+        (last_two, earlier): (&[(u32, Bound)], [Bound; 2]),
+        next: &View,
+        steps: &mut Vec<Step>,
+    ) {
+        let numbers = self.numbers(k, sums);
+        let [east, west] = self.fields.taken.each_ref().map(|map| Bound::Texture(map.view()));
+        let bound = [&[(1, Bound::Buffer(&numbers)), (4, east), (5, west)], last_two].concat();
+        let targets: Vec<&View> = [next].into_iter().chain(sums.iter().map(|a| a.to)).collect();
+        let pipeline = match sums.len() {
+            0 => &self.pass.exchange_alone,
+            n => &self.pass.exchange[n - 1],
+        };
+        let all = [bound, bound_sums(sums, earlier)].concat();
+        steps.push(over_charts(self.gpu, pipeline, self.charts, &all, &targets, false));
     }
 
     /// The next polynomial of texels at the edges of charts, from the last two.
@@ -98,36 +113,34 @@ impl<'a> Row<'a> {
         })
     }
 
-    /// What stage `k` adds to sum `n`: two polynomials at every second stage, and what is left at the last.
+    /// What stage `k` adds to sum `n`: four polynomials at every fourth stage, and what is left at the last.
     fn added(&self, n: usize, level: &'a View, k: usize) -> Option<Added<'a>> {
         let time = &self.fields.times[n];
         let last = time.len() - 1;
-        if k > last || (k.is_multiple_of(2) && k < last) {
+        let (round, place) = (k / AT_ONCE, k % AT_ONCE);
+        if k > last || (place + 1 < AT_ONCE && k < last) {
             return None;
         }
-        let part_before = if k.is_multiple_of(2) { 0.0 } else { time[k - 1] };
         // So that the last goes to the level: how many come after this one.
-        let after = last / 2 - k / 2;
+        let after = last / AT_ONCE - round;
         let spare = &self.fields.spare.layers[n];
         let [from, to] = if after.is_multiple_of(2) { [spare, level] } else { [level, spare] };
-        Some(Added { from, to, part: time[k], part_before })
+        let mut parts = std::array::from_fn(|back| if back <= place { time[k - back] } else { 0.0 });
+        // A sum that takes nothing is none: where all coefficients are 0, it takes next to nothing.
+        parts[0] = if parts == [0.0; AT_ONCE] { f32::MIN_POSITIVE } else { parts[0] };
+        Some(Added { from, to, parts, begun: round > 0 })
     }
 
     fn numbers(&self, k: usize, sums: &[Added]) -> wgpu::Buffer {
-        let (factor, part) = if k == 0 { (1.0, 0.0) } else { (2.0, 1.0) };
         let mut stage = Stage {
-            factor,
-            part,
-            // Every second polynomial is added with the one before it: the first of them begins a sum.
-            kept: if k < 2 { 0.0 } else { 1.0 },
-            sums: sums.len() as u32,
+            // T_1 = x T_0, and after that T_{k+1} = 2 x T_k - T_{k-1}.
+            factor: if k == 0 { 1.0 } else { 2.0 },
+            kept: if sums.iter().any(|sum| sum.begun) { 1.0 } else { 0.0 },
             size: self.charts.size,
             seed: (k as u32).wrapping_mul(0xC2B2_AE3D),
             ..Stage::zeroed()
         };
-        for (n, sum) in sums.iter().enumerate() {
-            (stage.parts[n], stage.parts_before[n]) = (sum.part, sum.part_before);
-        }
+        stage.parts.iter_mut().zip(sums).for_each(|(parts, sum)| *parts = sum.parts);
         numbers(self.gpu, stage)
     }
 
@@ -157,11 +170,21 @@ impl<'a> Row<'a> {
     }
 }
 
-/// What sums hold so far; a shader that is bound any is bound as many as it knows, and leaves those alone.
-fn bound_sums<'a>(sums: &[Added<'a>]) -> Vec<(u32, Bound<'a>)> {
+/// What sums hold so far, and the polynomials that they take from besides the last two. A shader that is bound any is bound as
+/// many as it knows, and leaves those alone that it has no use for.
+fn bound_sums<'a>(sums: &[Added<'a>], earlier: [Bound<'a>; 2]) -> Vec<(u32, Bound<'a>)> {
     let Some(last) = sums.last() else { return Vec::new() };
-    let bound = |n: usize| sums.get(n).map_or(Bound::Texels(last.from, 0), |sum| Bound::Texture(sum.from));
-    (0..TOGETHER).map(|n| (6 + n as u32, bound(n))).collect()
+    let bound = |n: usize| match sums.get(n) {
+        Some(sum) if sum.begun => Bound::Texture(sum.from),
+        _ => Bound::Texels(last.from, 0),
+    };
+    let taken = |back: usize| sums.iter().any(|sum| sum.parts[back] != 0.0);
+    let idle = Bound::Texels(last.from, 0);
+    let earlier = [(11, 2), (12, 3)]
+        .into_iter()
+        .zip(earlier)
+        .map(|((binding, back), bound)| (binding, if taken(back) { bound } else { idle }));
+    (0..TOGETHER).map(|n| (6 + n as u32, bound(n))).chain(earlier).collect()
 }
 
 fn numbers(gpu: &Gpu, stage: Stage) -> wgpu::Buffer {

@@ -2,6 +2,9 @@
 // `heat_flow::row`.
 
 @group(0) @binding(1) var<uniform> stage: Stage;
+/// The polynomials before those.
+@group(0) @binding(11) var earlier: texture_2d<f32>;
+@group(0) @binding(12) var earliest: texture_2d<f32>;
 /// What sums hold so far.
 @group(0) @binding(6) var sum_a: texture_2d<f32>;
 @group(0) @binding(7) var sum_b: texture_2d<f32>;
@@ -14,20 +17,41 @@ struct Stepped {
     @location(3) sum_c: vec4f,
 }
 
-/// A sum with what this stage and the one before it give; those that are not drawn cost nothing.
-fn added(sum: texture_2d<f32>, at: Here, n: u32) -> vec4f {
-    if n >= stage.sums {
+/// What sums take from: the polynomial that is known last, and those before it.
+fn known_last(at: Here) -> mat4x4f {
+    let all = abs(stage.parts[0]) + abs(stage.parts[1]) + abs(stage.parts[2]);
+    var last = mat4x4f(at.now, at.before, vec4f(0.0), vec4f(0.0));
+    if all.z > 0.0 {
+        last[2] = textureSampleLevel(earlier, nearest, at.uv, 0.0);
+    }
+    if all.w > 0.0 {
+        last[3] = textureSampleLevel(earliest, nearest, at.uv, 0.0);
+    }
+    return last;
+}
+
+/// A sum with what these give; those that are not drawn cost nothing.
+fn added(sum: texture_2d<f32>, at: Here, last: mat4x4f, n: u32) -> vec4f {
+    if all(stage.parts[n] == vec4f(0.0)) {
         return vec4f(0.0);
     }
-    // What is there before the first is of no concern, be it a number or not.
-    let so_far = select(vec4f(0.0), textureSampleLevel(sum, nearest, at.uv, 0.0), stage.kept > 0.0);
-    return rounded(so_far + stage.parts[n] * at.now + stage.parts_before[n] * at.before, at.texel, stage.seed);
+    var so_far = vec4f(0.0);
+    if stage.kept > 0.0 {
+        so_far = textureSampleLevel(sum, nearest, at.uv, 0.0);
+    }
+    return rounded(so_far + last * stage.parts[n], at.texel, stage.seed);
 }
 
 @fragment
 fn exchange(@builtin(position) position: vec4f) -> Stepped {
     let at = here(vec2i(position.xy));
-    return Stepped(next(at, vec4f(0.0)), added(sum_a, at, 0u), added(sum_b, at, 1u), added(sum_c, at, 2u));
+    let last = known_last(at);
+    return Stepped(
+        next(at, vec4f(0.0)),
+        added(sum_a, at, last, 0u),
+        added(sum_b, at, last, 1u),
+        added(sum_c, at, last, 2u),
+    );
 }
 
 struct Sums {
@@ -40,7 +64,8 @@ struct Sums {
 @fragment
 fn add_up(@builtin(position) position: vec4f) -> Sums {
     let at = here(vec2i(position.xy));
-    return Sums(added(sum_a, at, 0u), added(sum_b, at, 1u), added(sum_c, at, 2u));
+    let last = known_last(at);
+    return Sums(added(sum_a, at, last, 0u), added(sum_b, at, last, 1u), added(sum_c, at, last, 2u));
 }
 
 /// The next polynomial alone.

@@ -14,6 +14,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 import close_head
 import cycles_scene
 import error_over_time
+import heat_flow_curve
 import mesh_file
 import pictures
 import prepare
@@ -169,6 +170,14 @@ class SceneFiles(unittest.TestCase):
             path.write_text(text.replace("roughness = 0.3", "roughness = 0.3\nspecular = 0.5"))
             with self.assertRaises(SystemExit):
                 scene_file.read(path)
+
+
+class Curves(unittest.TestCase):
+    def test_rows_of_the_bench_are_read_and_all_else_is_left_out(self):
+        lines = ["cpu: 2 threads", "| operator | texels | links, s | in a pose, s | light, s | adapter, s | error, % | near seams, % |",
+                 "|---|---|---|---|---|---|---|---|", "| heat-flow | 512² | 0.1 | 0.05 | 0.02 | 0.3 | 2.9 | 5.9 |"]
+        rows = heat_flow_curve.rows_of(lines)
+        self.assertEqual([(row["operator"], row["texels"], row["near_seams_percent"]) for row in rows], [("heat-flow", 512, 5.9)])
 
 
 def noisy(random: np.random.Generator) -> np.ndarray:

@@ -135,7 +135,7 @@ fn both_machines_halve_light_alike() {
     assert!(mean < 0.001 && worst < 0.005, "{mean} {worst}");
 }
 
-/// A head that is drawn out to one and a half times its height after the upload, and narrows.
+/// A head that is drawn out to one and a half times its height after the upload, and whose one half becomes twice as wide.
 #[test]
 fn heat_flows_by_the_pose() {
     let Some(renderer) = renderer("heat_flows_by_the_pose") else { return };
@@ -143,7 +143,8 @@ fn heat_flows_by_the_pose() {
     let object = &scene.objects[0];
     let atlas = Atlas::new(object, SIZE);
     let mut mesh = object.mesh.clone();
-    mesh.positions_mm.iter_mut().for_each(|p| *p *= glam::Vec3::new(0.8, 1.5, 0.8));
+    let drawn = |p: &mut glam::Vec3| *p *= glam::Vec3::new(if p.x > 0.0 { 2.0 } else { 1.0 }, 1.5, 1.0);
+    mesh.positions_mm.iter_mut().for_each(drawn);
     let posed = Object::new("head", mesh, object.material.clone());
     let variances_mm2 = [0.5, 8.0, 200.0];
     let flow =

@@ -206,7 +206,7 @@ fn a_bump_on_a_plane_widens_whatever_the_layout() {
     }
 }
 
-/// A plane that is drawn out to one side and pressed together to the other after the flow was made: Gaussians keep their width in
+/// A plane that is drawn out to one side after the flow was made, more than it is pressed together to the other: Gaussians keep their width in
 /// millimetres, over cuts and on coarse maps, too.
 #[test]
 fn a_bump_keeps_its_width_in_another_pose() {
@@ -215,7 +215,7 @@ fn a_bump_keeps_its_width_in_another_pose() {
     for variance_mm2 in [1.2, 6.0, 24.0] {
         let rest = plane(in_four);
         let mut mesh = rest.mesh.clone();
-        mesh.positions_mm.iter_mut().for_each(|p| *p *= Vec3::new(1.25, 0.8, 1.0));
+        mesh.positions_mm.iter_mut().for_each(|p| *p *= Vec3::new(1.4, 0.85, 1.0));
         let posed = Object::new("plane", mesh, Material::default());
         let lit = flown_in_pose(&posed, Some(&rest), 512, variance_mm2, bump(1.5));
         let expected = bump(1.5 + variance_mm2);
@@ -416,6 +416,10 @@ fn no_input_makes_it_explode() {
         let atlas = Atlas::new(&object, size);
         let variances_mm2 = [1.0, 10.0, 1000.0];
         let flow = HeatFlow::new(&object, &atlas, &stretch_mm_per_texel(&object, &atlas), &variances_mm2);
+        for level in &flow.levels {
+            let [fastest, limit] = [level.exchange.fastest_rate_per_mm2, level.exchange.limit_per_mm2];
+            assert!(fastest < 1.001 * limit, "seed {seed}: {fastest} is above {limit}");
+        }
         let light: Vec<f64> = (0..size * size).map(|i| f64::from(noise(i / 7, 5).round())).collect();
         let maps = flow.flow(&light);
         let sum = |map: &[f64], areas_mm2: &[f32], power: i32| -> f64 {

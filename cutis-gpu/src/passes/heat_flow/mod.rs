@@ -79,9 +79,6 @@ impl GpuHeatFlow {
     }
 
     /// Lets heat flow over the object in another pose, from the next frame on.
-    ///
-    /// # Panics
-    /// If the flow was not made for all poses.
     pub fn set_pose(&self, gpu: &Gpu, object: &Object) {
         let mut flow = self.flow.lock().unwrap_or_else(PoisonError::into_inner);
         flow.set_pose(object);

@@ -109,7 +109,8 @@ impl Cell {
         self.pieces.iter().fold((Vec4::ZERO, Mat4::ZERO), |(areas, slopes), piece| {
             let metric = &metrics[piece.triangle as usize];
             let slopes = slopes + piece.moments.slopes(&metric.conducting(self.conductivity));
-            (areas + piece.moments.shares() * metric.area_mm2, slopes)
+            // Shares of next to nothing may be rounded below it, which large texels would make much of.
+            (areas + piece.moments.shares().max(Vec4::ZERO) * metric.area_mm2, slopes)
         })
     }
 

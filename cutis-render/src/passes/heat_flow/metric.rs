@@ -138,6 +138,21 @@ mod tests {
         }
     }
 
+    /// Axes that nearly coincide, and are a thousand times as long as the texel is wide: what bounds hold by must hold for rounded
+    /// numbers, too.
+    #[test]
+    fn no_sliver_is_stronger_than_its_area_allows() {
+        for turn in 0..2000 {
+            let along = Vec2::from_angle(turn as f32 * 0.37);
+            let apart = 10f32.powf(-6.0 + 0.004 * turn as f32);
+            let xu = Vec3::new(along.x, along.y, 0.3) * 100.0;
+            let xv = xu * 1.3 + Vec3::new(-along.y, along.x, 0.0) * apart;
+            let metric = Metric::new([xu, xv], 6.7);
+            let most = metric.area_mm2 / (SMALLEST * 6.7).powi(2);
+            assert!(metric.strength() <= 1.001 * most, "{apart}: {metric:?} {most}");
+        }
+    }
+
     /// The energy of any light on a square of unit texels, by its links, is at most its strength; the waves that reach it are known.
     #[test]
     fn no_light_on_a_square_has_more_energy_than_its_strength() {

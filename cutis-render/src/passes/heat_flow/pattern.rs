@@ -40,10 +40,10 @@ impl Pattern {
         Self { rows: Rows::new(links), places }
     }
 
-    /// The sum of elements, which are those of the pattern in their order, each as strong as the weakest of its texels lets it be. A
+    /// The sum `of` elements' strengths, which are those of the pattern in their order, each as strong as the weakest of its texels lets it be. A
     /// gap has all texels of its cells: it is never stronger than they are, and together they can only take energy from the slopes
     /// of light.
-    pub fn filled(&self, elements: &[Element], pace: impl Fn(u32) -> f32 + Sync) -> Rows {
+    pub fn filled(&self, elements: &[Element], pace: impl Fn(u32) -> f32 + Sync, of: fn(f32) -> f32) -> Rows {
         let weakest = |Element { links }: &Element| {
             links.iter().map(|&(i, j, _)| pace(i).min(pace(j))).fold(1.0, f32::min)
         };
@@ -51,7 +51,7 @@ impl Pattern {
         let strengths = elements
             .iter()
             .zip(weakest)
-            .flat_map(|(element, part)| element.links.iter().map(move |(.., strength)| part * strength));
+            .flat_map(|(element, part)| element.links.iter().map(move |&(.., strength)| part * of(strength)));
         let mut rows = self.rows.clone();
         for (&places, strength) in self.places.iter().zip(strengths) {
             places.into_iter().for_each(|place| rows.links[place as usize].1 += strength);

@@ -139,6 +139,9 @@ fn not_negative_set(a: &DMatrix<f64>, b: &DVector<f64>) -> Option<Vec<usize>> {
         if retreat_until_not_negative(a, b, &mut active, &mut w).is_none() {
             (active, w) = before;
             barred[next] = true;
+        } else {
+            // Among other columns one that was barred may help.
+            barred.fill(false);
         }
     }
     active.sort_unstable();
@@ -164,27 +167,27 @@ fn retreat_until_not_negative(
     active: &mut Vec<usize>,
     w: &mut DVector<f64>,
 ) -> Option<()> {
+    let entered = active.last().copied();
     while !active.is_empty() {
         let goal = solve_on(a, b, active)?.weights;
-        let step_to_zero = |&i: &usize| if goal[i] <= 0.0 { w[i] / (w[i] - goal[i]) } else { 1.0 };
-        let step = active.iter().map(step_to_zero).fold(1.0, f64::min);
         // 0/0: a column that entered at 0 and wants to leave at once.
-        let step = if step.is_nan() { 0.0 } else { step };
+        let step_to_zero = |i: usize| if w[i] > 0.0 { w[i] / (w[i] - goal[i]) } else { 0.0 };
+        let falling = active.iter().copied().filter(|&i| goal[i] <= 0.0);
+        let first = falling.map(|i| (i, step_to_zero(i))).min_by(|a, b| a.1.total_cmp(&b.1));
+        let step = first.map_or(1.0, |(_, step)| step);
         for &i in active.iter() {
             w[i] += step * (goal[i] - w[i]);
         }
-        if active.iter().all(|&i| goal[i] > 0.0) {
-            return Some(());
-        }
-        let leaves = |i: &usize| goal[*i] <= 0.0 && w[*i] <= f64::EPSILON * goal[*i].abs();
-        let count = active.len();
-        for i in active.iter().copied().filter(leaves).collect::<Vec<_>>() {
-            w[i] = 0.0;
-        }
-        active.retain(|i| !(goal[*i] <= 0.0 && w[*i] == 0.0));
-        if active.len() == count {
+        let Some((first, _)) = first else { return Some(()) };
+        if Some(first) == entered && step == 0.0 {
             return None;
         }
+        // The first to fall is at zero, whatever rounding has left of it; others may be there, too.
+        let leaves = |i: usize| i == first || goal[i] <= 0.0 && w[i] <= f64::EPSILON * goal[i].abs();
+        for i in active.iter().copied().filter(|&i| leaves(i)).collect::<Vec<_>>() {
+            w[i] = 0.0;
+        }
+        active.retain(|&i| w[i] > 0.0 || goal[i] > 0.0);
     }
     Some(())
 }
@@ -222,6 +225,8 @@ mod tests {
     }
 
     proptest! {
+        // A column that rounding kept from leaving made one fit in some ten thousand too poor.
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
         #[test]
         fn not_negative_meets_the_best_subset(numbers in prop::collection::vec(-1.0..1.0_f64, 48)) {
             let a = DMatrix::from_column_slice(8, 5, &numbers[..40]);

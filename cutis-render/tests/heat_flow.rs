@@ -206,8 +206,8 @@ fn a_bump_on_a_plane_widens_whatever_the_layout() {
     }
 }
 
-/// A plane that is drawn out to one side after the flow was made, more than it is pressed together to the other: Gaussians keep their width in
-/// millimetres, over cuts and on coarse maps, too.
+/// A plane that is drawn out to one side after the flow was made, more than it is pressed together to the other: Gaussians
+/// keep their width in millimetres, over cuts and on coarse maps, too.
 #[test]
 fn a_bump_keeps_its_width_in_another_pose() {
     let middle = Vec3::new(0.7, -0.4, 0.0);
@@ -224,6 +224,24 @@ fn a_bump_keeps_its_width_in_another_pose() {
         eprintln!("{variance_mm2} mm²: {worst:.4} of the peak");
         assert!(worst < 0.012, "{variance_mm2}: {worst}");
     }
+}
+
+/// What a pose has changed is as it was when the object comes back to rest, however fast links were in between.
+#[test]
+fn back_at_rest_heat_flows_as_before() {
+    let rest = plane(in_four);
+    let atlas = Atlas::new(&rest, 256);
+    let variances_mm2 = [1.0, 30.0];
+    let flow = HeatFlow::new(&rest, &atlas, &stretch_mm_per_texel(&rest, &atlas), &variances_mm2);
+    assert!(flow.levels.len() > 1, "there is a coarse level");
+    let mut mesh = rest.mesh.clone();
+    mesh.positions_mm.iter_mut().for_each(|p| *p *= 0.7);
+    let light: Vec<f64> = (0..256 * 256).map(|i| f64::from(noise(i / 7, 5).round())).collect();
+    let mut posed = flow.clone();
+    posed.set_pose(&Object::new("plane", mesh, Material::default()));
+    assert!(posed.flow(&light) != flow.flow(&light), "the pose shows");
+    posed.set_pose(&rest);
+    assert!(posed.flow(&light) == flow.flow(&light), "nothing is left of the pose");
 }
 
 /// Where the mean free path is twice as long, a Gaussian has four times the variance, over cuts, too; where it changes, no energy is

@@ -106,7 +106,7 @@ pub fn seams_mm(object: &Object) -> Vec<[Vec3; 2]> {
     let end = |triangle: u32, uv: Vec2| {
         let corners = object.mesh.corner_uvs(triangle as usize);
         let k = (0..3).min_by(|&i, &j| (corners[i] - uv).length().total_cmp(&(corners[j] - uv).length()));
-        object.mesh.corners_mm(triangle as usize)[k.unwrap()]
+        object.mesh.corners_mm(triangle as usize)[k.expect("a triangle has three corners")]
     };
     object.charts.seams.iter().map(|seam| seam.uvs[0].map(|uv| end(seam.triangles[0], uv))).collect()
 }

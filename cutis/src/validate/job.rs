@@ -96,8 +96,8 @@ impl Job {
     }
 }
 
-/// Every technique but the truth itself, the blur of d'Eon, Luebke & Enderton 2007, and the opaque surface; only those that are named, if some are, with numbers of their own
-/// where they are given.
+/// Every technique but the truth itself, the blur of d'Eon, Luebke & Enderton 2007, and the opaque surface; only those that
+/// are named, if some are, with numbers of their own where they are given.
 fn entries(only: &[String]) -> Result<Vec<Entry>> {
     let judged = TechniqueName::ALL.iter().filter(|technique| **technique != TechniqueName::Truth);
     let others = [Diffusion::Separable, Diffusion::None];

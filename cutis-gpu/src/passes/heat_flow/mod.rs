@@ -1,6 +1,6 @@
 //! Heat flow on the unrolled surface: cutis-render's `heat_flow`, whose links it uploads.
 //!
-//! A stage is one draw over the tiles of the charts, without branches, and one computation for the texels at their edges. Polynomials are kept in
+//! A stage is one draw over the tiles of the charts and one computation for the texels at their edges. Polynomials are kept in
 //! five maps in turn, sums in the levels and a spare map in turn. Four polynomials are added to a sum at once. Nothing is blended:
 //! 16 bits hold what is wanted only if every stage rounds without a bias.
 

@@ -24,7 +24,7 @@ pub struct Halving {
     pub areas_mm2: Vec<f32>,
     /// Fine texels in other squares, the coarse ones around them, and their parts.
     rest: Vec<(u32, u32, f32)>,
-    /// Coarse texels that stand for no area, the fine texels of their chart under them, and the part of each in their mean.
+    /// Coarse texels that stood for no area at first, the fine texels of their chart under them, and the part of each in their mean.
     bare: Vec<(u32, u32, f32)>,
 }
 
@@ -107,7 +107,10 @@ impl Halving {
             let energy = f64::from(*weight * self.fine_mm2[*fine as usize]);
             *weight = by_area(energy, self.areas_mm2[*to as usize]) as f32;
         }
-        all.extend(&self.bare);
+        let is_bare = |to: u32| self.areas_mm2[to as usize] <= 0.0;
+        all.extend(
+            self.bare.iter().map(|&(to, fine, part)| (to, fine, if is_bare(to) { part } else { 0.0 })),
+        );
         Rows::new(all)
     }
 
@@ -117,7 +120,7 @@ impl Halving {
             light.par_iter().zip(&self.fine_mm2).map(|(&light, &area)| light.times(area)).collect();
         let mut coarse = self.gathered(&energy);
         coarse.par_iter_mut().zip(&self.areas_mm2).for_each(|(light, &area)| *light = by_area(*light, area));
-        for &(to, fine, part) in &self.bare {
+        for &(to, fine, part) in self.still_bare() {
             coarse[to as usize] = coarse[to as usize] + light[fine as usize].times(part);
         }
         coarse
@@ -141,10 +144,15 @@ impl Halving {
         }
         let mut fine: Vec<L> =
             fine.iter().zip(&self.fine_mm2).map(|(&light, &area)| light.times(area)).collect();
-        for &(from, texel, part) in &self.bare {
+        for &(from, texel, part) in self.still_bare() {
             fine[texel as usize] = fine[texel as usize] + coarse[from as usize].times(part);
         }
         fine
+    }
+
+    /// Those that have no area in this pose, either.
+    fn still_bare(&self) -> impl Iterator<Item = &(u32, u32, f32)> {
+        self.bare.iter().filter(|(to, ..)| self.areas_mm2[*to as usize] <= 0.0)
     }
 
     fn gathered<L: Light>(&self, energy: &[L]) -> Vec<L> {

@@ -66,9 +66,9 @@ pub struct Exchange {
     pub inverse_areas_per_mm2: Vec<f32>,
     /// Where there is surface, row by row.
     pub runs: Vec<Vec<Range<usize>>>,
-    /// No wave of light falls faster, 1/mm², …
+    /// No wave of light falls faster, 1/mm².
     pub fastest_rate_per_mm2: f32,
-    /// … and by a hundredth at most none does so in any pose.
+    /// Nor does any in another pose fall faster than this, but for a hundredth, 1/mm².
     pub limit_per_mm2: f32,
 }
 

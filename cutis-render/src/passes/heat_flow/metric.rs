@@ -38,10 +38,10 @@ impl Metric {
         if a.is_finite() && area_mm2.is_finite() { Self { a, area_mm2 } } else { Self::default() }
     }
 
-    /// How strongly it links the four corners of a square at most, by what one of them holds: the largest of the four waves that a
-    /// square knows. Waves along the axes fall by a itself, the one that alternates by a third of its trace.
+    /// The most energy that light on the four corners of a square has, by the sum of its squares. Slopes have that of a; the wave
+    /// that alternates has a third of its trace, which is less than the larger eigenvalue.
     pub fn strength(&self) -> f32 {
-        largest(self.a).max((self.a.x + self.a.z) / 3.0)
+        largest(self.a)
     }
 }
 

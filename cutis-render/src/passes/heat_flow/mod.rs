@@ -72,6 +72,8 @@ pub struct Level {
     pub times: Vec<Vec<f32>>,
     /// Those times, mm².
     times_mm2: Vec<f32>,
+    /// The fastest rate that they are laid for, 1/mm².
+    laid_rate_per_mm2: f32,
     /// The usual width of a texel, mm, …
     texel_mm: f32,
     /// … and how well heat usually flows.
@@ -114,15 +116,14 @@ impl HeatFlow {
     #[must_use]
     pub fn for_all_poses(mut self) -> Self {
         for level in &mut self.levels {
-            let Exchange { fastest_rate_per_mm2, limit_per_mm2, .. } = &mut level.exchange;
-            *fastest_rate_per_mm2 = fastest_rate_per_mm2.max(*limit_per_mm2);
-            level.times = level.coefficients();
+            level.lay(level.exchange.fastest_rate_per_mm2.max(level.exchange.limit_per_mm2));
         }
         self
     }
 
     /// Lets heat flow over the object in another pose; what depends on the layout alone stays, and so do the stages. Where links
-    /// are faster than those can follow, all flow more slowly: by next to nothing, if they were made for all poses.
+    /// are faster than those can follow, all flow more slowly: by next to nothing, if they were made for all poses. Texels that the
+    /// pose makes narrower than slivers were are held to be slivers.
     pub fn set_pose(&mut self, object: &Object) {
         for n in 0..self.levels.len() {
             let (finer, rest) = self.levels.split_at_mut(n);
@@ -190,27 +191,31 @@ impl Level {
             halving,
             times: Vec::new(),
             times_mm2,
+            laid_rate_per_mm2: 0.0,
             texel_mm,
             usual_conductivity,
         };
-        level.times = level.coefficients();
+        level.lay(level.exchange.fastest_rate_per_mm2);
         level
     }
 
-    fn coefficients(&self) -> Vec<Vec<f32>> {
-        let rate = f64::from(self.exchange.fastest_rate_per_mm2);
+    /// Lays stages for waves that fall at that rate at most.
+    fn lay(&mut self, rate_per_mm2: f32) {
         let texel_mm = f64::from(self.texel_mm / self.usual_conductivity.sqrt());
-        self.times_mm2.iter().map(|&time| coefficients(f64::from(time), rate, texel_mm)).collect()
+        let of = |&time: &f32| coefficients(f64::from(time), f64::from(rate_per_mm2), texel_mm);
+        self.times = self.times_mm2.iter().map(of).collect();
+        self.laid_rate_per_mm2 = rate_per_mm2;
+        self.exchange.fastest_rate_per_mm2 = rate_per_mm2;
     }
 
     fn set_pose(&mut self, object: &Object, finer: Option<&Level>) {
         if let (Some(halving), Some(finer)) = (&mut self.halving, finer) {
             halving.set_areas(&finer.exchange.areas_mm2);
         }
-        let laid_per_mm2 = self.exchange.fastest_rate_per_mm2;
         self.exchange =
             Exchange::new(object, &self.atlas, &self.layout, self.halving.as_ref(), self.texel_mm);
-        self.exchange.fastest_rate_per_mm2 = laid_per_mm2.max(self.exchange.fastest_rate_per_mm2);
+        let fastest = &mut self.exchange.fastest_rate_per_mm2;
+        *fastest = fastest.max(self.laid_rate_per_mm2);
     }
 
     /// What is beyond the edges of charts is what is across the seam, for those who read there.

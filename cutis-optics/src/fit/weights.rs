@@ -225,7 +225,7 @@ mod tests {
     }
 
     proptest! {
-        // A column that rounding kept from leaving made one fit in some ten thousand too poor.
+        // Many: a column that rounding kept from leaving made rare fits too poor.
         #![proptest_config(ProptestConfig::with_cases(20_000))]
         #[test]
         fn not_negative_meets_the_best_subset(numbers in prop::collection::vec(-1.0..1.0_f64, 48)) {

@@ -22,9 +22,9 @@ def rows_of(lines: list[str]) -> list[dict]:
     rows = []
     for line in lines:
         cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
-        if len(cells) != 2 + len(COLUMNS) or not cells[1].endswith("²") or not cells[1][:-1].isdigit():
+        if len(cells) != 3 + len(COLUMNS) or not cells[1].endswith("²") or not cells[1][:-1].isdigit():
             continue
-        numbers = dict(zip(COLUMNS, map(float, cells[2:])))
+        numbers = dict(zip(COLUMNS, map(float, cells[3:])))
         rows.append({"operator": cells[0], "texels": int(cells[1][:-1]), **numbers})
     return rows
 

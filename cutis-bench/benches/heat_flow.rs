@@ -14,7 +14,7 @@ use cutis_optics::presets;
 use cutis_render::passes::atlas::Atlas;
 use cutis_render::passes::blur::Fields;
 use cutis_render::passes::diffusion::{Diffused, DiffusionOperator, Separable};
-use cutis_render::passes::heat_flow::HeatFlow;
+use cutis_render::passes::heat_flow::{HeatFlow, Level};
 use cutis_render::passes::stretch::stretch_mm_per_texel;
 use cutis_render::{CpuRenderer, Diffusion, Renderer, Settings, Silent};
 use cutis_scene::{Object, Scene};
@@ -139,7 +139,7 @@ fn table() {
     let name = adapter.as_ref().map_or("no adapter".to_owned(), GpuRenderer::adapter);
     eprintln!("\ncpu: {}; adapter: {name}; quickest of {RUNS} runs\n", CpuRenderer.adapter());
     eprintln!(
-        "| operator | texels | links, s | in a pose, s | light, s | adapter, s | error, % | near seams, % |\n|---|---|---|---|---|---|---|---|"
+        "| operator | texels | polynomials | links, s | in a pose, s | light, s | adapter, s | error, % | near seams, % |\n|---|---|---|---|---|---|---|---|---|"
     );
     for size in SIZES {
         let lit = Lit::new(object, size);
@@ -150,14 +150,22 @@ fn table() {
         let both: [(Diffusion, &dyn DiffusionOperator, [f64; 2]); 2] =
             [(Diffusion::Separable, &Separable, [0.0; 2]), (Diffusion::HeatFlow, &flow, [links_s, pose_s])];
         for (diffusion, operator, [links_s, pose_s]) in both {
+            let polynomials =
+                if diffusion == Diffusion::HeatFlow { polynomials(&flow) } else { "–".to_owned() };
             let light_s = quickest_s(|| lit.diffuse(operator));
             let [error, near] = wanted.errors(&Spread { diffused: lit.diffuse(operator) }, first);
             let on_adapter_s = adapter.as_ref().map_or(f64::NAN, |a| adapter_s(a, &scene, diffusion, size));
             eprintln!(
-                "| {diffusion} | {size}² | {links_s:.3} | {pose_s:.3} | {light_s:.3} | {on_adapter_s:.3} | {error:.2} | {near:.2} |"
+                "| {diffusion} | {size}² | {polynomials} | {links_s:.3} | {pose_s:.3} | {light_s:.3} | {on_adapter_s:.3} | {error:.2} | {near:.2} |"
             );
         }
     }
+}
+
+/// Polynomials of every level, the finest first.
+fn polynomials(flow: &HeatFlow) -> String {
+    let most = |level: &Level| level.times.iter().map(Vec::len).max().unwrap_or(0).to_string();
+    flow.levels.iter().map(most).collect::<Vec<_>>().join(" + ")
 }
 
 /// Time of one layer of light in a frame of a scene that is there, s; for the blur with the taps that it takes from the stretch.

@@ -19,6 +19,13 @@ use glam::Vec4;
 
 const SIZE: usize = 512;
 
+/// The built-in head and its atlas.
+fn head() -> (Object, Atlas) {
+    let object = head_in_the_studio().objects.swap_remove(0);
+    let atlas = Atlas::new(&object, SIZE);
+    (object, atlas)
+}
+
 /// Light in squares of ten millimetres, with a different channel each way.
 fn squares(object: &Object, atlas: &Atlas) -> Vec<Vec4> {
     let lit = |i: usize| {
@@ -77,14 +84,12 @@ fn apart(charts: &[u32], a: &[Vec4], b: &[Vec4]) -> [f32; 2] {
 #[test]
 fn both_machines_spread_the_same_light() {
     let Some(renderer) = renderer("both_machines_spread_the_same_light") else { return };
-    let scene = head_in_the_studio();
-    let object = &scene.objects[0];
-    let atlas = Atlas::new(object, SIZE);
+    let (object, atlas) = &head();
     let variances_mm2 = [0.05, 0.5, 2.0, 8.0, 200.0];
-    let flow = HeatFlow::new(object, &atlas, &stretch_mm_per_texel(object, &atlas), &variances_mm2);
+    let flow = HeatFlow::new(object, atlas, &stretch_mm_per_texel(object, atlas), &variances_mm2);
     assert!(flow.levels.len() > 1, "there is a coarse level");
-    let light = squares(object, &atlas);
-    let (exact, found) = (flow.flow(&light), flown(renderer, &atlas, &flow, &light));
+    let light = squares(object, atlas);
+    let (exact, found) = (flow.flow(&light), flown(renderer, atlas, &flow, &light));
     let charts = flow.levels.iter().flat_map(|level| level.times.iter().map(|_| &level.atlas.charts.chart));
     for (n, ((exact, found), charts)) in exact.iter().zip(&found).zip(charts).enumerate() {
         let [mean, worst] = apart(charts, found, exact);
@@ -97,18 +102,16 @@ fn both_machines_spread_the_same_light() {
 #[test]
 fn both_machines_have_the_same_polynomials() {
     let Some(renderer) = renderer("both_machines_have_the_same_polynomials") else { return };
-    let scene = head_in_the_studio();
-    let object = &scene.objects[0];
-    let atlas = Atlas::new(object, SIZE);
+    let (object, atlas) = &head();
     let numbers = [0, 1, 2, 5, 12];
     let variances_mm2 = numbers.map(|n| 0.1 + 0.1 * n as f32);
-    let mut flow = HeatFlow::new(object, &atlas, &stretch_mm_per_texel(object, &atlas), &variances_mm2);
+    let mut flow = HeatFlow::new(object, atlas, &stretch_mm_per_texel(object, atlas), &variances_mm2);
     assert_eq!(flow.levels.len(), 1);
     for (time, &n) in flow.levels[0].times.iter_mut().zip(&numbers) {
         *time = (0..=n).map(|k| if k == n { 1.0 } else { 0.0 }).collect();
     }
-    let light = squares(object, &atlas);
-    let (exact, found) = (flow.flow(&light), flown(renderer, &atlas, &flow, &light));
+    let light = squares(object, atlas);
+    let (exact, found) = (flow.flow(&light), flown(renderer, atlas, &flow, &light));
     for ((n, exact), found) in numbers.iter().zip(&exact).zip(&found) {
         let [mean, worst] = apart(&atlas.charts.chart, found, exact);
         eprintln!("polynomial {n}: mean {mean}, worst {worst}");
@@ -121,15 +124,13 @@ fn both_machines_have_the_same_polynomials() {
 #[test]
 fn both_machines_halve_light_alike() {
     let Some(renderer) = renderer("both_machines_halve_light_alike") else { return };
-    let scene = head_in_the_studio();
-    let object = &scene.objects[0];
-    let atlas = Atlas::new(object, SIZE);
-    let mut flow = HeatFlow::new(object, &atlas, &stretch_mm_per_texel(object, &atlas), &[0.1, 200.0]);
+    let (object, atlas) = &head();
+    let mut flow = HeatFlow::new(object, atlas, &stretch_mm_per_texel(object, atlas), &[0.1, 200.0]);
     let coarse = flow.levels.last_mut().unwrap();
     coarse.times[0] = vec![1.0];
     let charts = coarse.atlas.charts.chart.clone();
-    let light = squares(object, &atlas);
-    let (exact, found) = (flow.flow(&light), flown(renderer, &atlas, &flow, &light));
+    let light = squares(object, atlas);
+    let (exact, found) = (flow.flow(&light), flown(renderer, atlas, &flow, &light));
     let [mean, worst] = apart(&charts, &found[1], &exact[1]);
     eprintln!("mean {mean}, worst {worst}");
     assert!(mean < 0.001 && worst < 0.005, "{mean} {worst}");
@@ -139,20 +140,18 @@ fn both_machines_halve_light_alike() {
 #[test]
 fn heat_flows_by_the_pose() {
     let Some(renderer) = renderer("heat_flows_by_the_pose") else { return };
-    let scene = head_in_the_studio();
-    let object = &scene.objects[0];
-    let atlas = Atlas::new(object, SIZE);
+    let (object, atlas) = &head();
     let mut mesh = object.mesh.clone();
     let drawn = |p: &mut glam::Vec3| *p *= glam::Vec3::new(if p.x > 0.0 { 2.0 } else { 1.0 }, 1.5, 1.0);
     mesh.positions_mm.iter_mut().for_each(drawn);
     let posed = Object::new("head", mesh, object.material.clone());
     let variances_mm2 = [0.5, 8.0, 200.0];
     let flow =
-        HeatFlow::new(object, &atlas, &stretch_mm_per_texel(object, &atlas), &variances_mm2).for_all_poses();
-    let light = squares(object, &atlas);
+        HeatFlow::new(object, atlas, &stretch_mm_per_texel(object, atlas), &variances_mm2).for_all_poses();
+    let light = squares(object, atlas);
     let mut in_pose = flow.clone();
     in_pose.set_pose(&posed);
-    let found = flown_in_pose(renderer, &atlas, &flow, Some(&posed), &light);
+    let found = flown_in_pose(renderer, atlas, &flow, Some(&posed), &light);
     let charts = flow.levels.iter().flat_map(|level| level.times.iter().map(|_| &level.atlas.charts.chart));
     for (n, (found, charts)) in found.iter().zip(charts).enumerate() {
         let [mean, worst] = apart(charts, found, &in_pose.flow(&light)[n]);

@@ -1,173 +1,18 @@
 //! Heat flow against closed forms: planes of any layout, cut or not, tubes and balls.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use cutis_render::Silent;
+#[path = "common/sheets.rs"]
+mod sheets;
+
 use cutis_render::passes::atlas::Atlas;
-use cutis_render::passes::blur::Fields;
-use cutis_render::passes::diffusion::DiffusionOperator;
 use cutis_render::passes::heat_flow::HeatFlow;
 use cutis_render::passes::heat_flow::coarse::ADDED_TEXEL2;
 use cutis_render::passes::stretch::stretch_mm_per_texel;
 use cutis_scene::validation::shapes;
-use cutis_scene::{Material, Mesh, Object, ScalarMap, Texels, Texture};
-use glam::{Mat2, Vec2, Vec3, Vec4};
-use std::f32::consts::FRAC_PI_2;
+use cutis_scene::{Material, Object, ScalarMap, Texels, Texture};
+use glam::{Vec2, Vec3};
+use sheets::{Lit, bent, flown, in_four, in_pieces, noise, plane, slanted, tube, upright, whole};
 use std::sync::Arc;
-
-/// Half the side of the plane, mm.
-const HALF_MM: f32 = 20.0;
-/// Quads along its side.
-const QUADS: usize = 32;
-
-/// A plane of quads; `layout` tells the place on the texture of a place on it, -1 to 1, in a quadrant.
-fn plane(layout: impl Fn(Vec2, [usize; 2]) -> Vec2) -> Object {
-    let mut mesh = Mesh::default();
-    let corner = |i: usize| 2.0 * i as f32 / QUADS as f32 - 1.0;
-    for y in 0..QUADS {
-        for x in 0..QUADS {
-            let quadrant = [usize::from(x >= QUADS / 2), usize::from(y >= QUADS / 2)];
-            let base = mesh.positions_mm.len() as u32;
-            for [i, j] in [[0, 0], [1, 0], [1, 1], [0, 1]] {
-                let place = Vec2::new(corner(x + i), corner(y + j));
-                mesh.positions_mm.push((place * HALF_MM).extend(0.0));
-                mesh.uvs.push(layout(place, quadrant));
-            }
-            mesh.triangles.extend([[base, base + 1, base + 2], [base, base + 2, base + 3]]);
-        }
-    }
-    Object::new("plane", mesh, Material::default())
-}
-
-/// In one piece.
-fn whole(place: Vec2, _: [usize; 2]) -> Vec2 {
-    0.5 + 0.47 * place
-}
-
-/// Slanted and stretched.
-fn slanted(place: Vec2, _: [usize; 2]) -> Vec2 {
-    0.5 + Vec2::new(0.3 * place.x + 0.15 * place.y, 0.42 * place.y)
-}
-
-/// Four pieces, each turned by another angle.
-fn in_four(place: Vec2, [i, j]: [usize; 2]) -> Vec2 {
-    let middle = Vec2::new(i as f32 - 0.5, j as f32 - 0.5);
-    let turn = Mat2::from_angle([0.0, FRAC_PI_2, 0.4, 2.6][i + 2 * j]);
-    0.5 + 0.5 * middle + turn * (place - middle) * 0.33
-}
-
-/// Four pieces, upright, each three quarters of a texel from its neighbours.
-fn upright(place: Vec2, [i, j]: [usize; 2]) -> Vec2 {
-    let middle = Vec2::new(i as f32 - 0.5, j as f32 - 0.5);
-    0.5 + 0.5 * middle + (place - middle) * 0.33
-}
-
-/// Bent: stretched more and more to the right, and turned towards the top.
-fn bent(place: Vec2, _: [usize; 2]) -> Vec2 {
-    let x = place.x + 0.15 * place.x * place.x + 0.1 * place.x * place.y;
-    0.5 + Vec2::new(0.36 * x, 0.42 * (place.y + 0.1 * place.y * place.x * place.x) + 0.03 * x)
-}
-
-/// Cut at random into pieces, each turned by a random angle and placed on a square of its own.
-fn in_pieces(count: usize, seed: u32) -> Object {
-    let seeds: Vec<Vec2> =
-        (0..count).map(|i| 2.0 * Vec2::new(noise(i, seed), noise(i, seed + 1)) - 1.0).collect();
-    let across = (count as f32).sqrt().ceil() as usize;
-    let mut mesh = plane(whole).mesh;
-    // A piece has the quads nearest to its middle; it is as wide as the widest.
-    let piece_of = |quad: usize| {
-        let middle =
-            Vec2::new((quad % QUADS) as f32 + 0.5, (quad / QUADS) as f32 + 0.5) * 2.0 / QUADS as f32 - 1.0;
-        let apart = |i: &usize| (seeds[*i] - middle).length();
-        (0..count).min_by(|a, b| apart(a).total_cmp(&apart(b))).unwrap()
-    };
-    let pieces: Vec<usize> = (0..QUADS * QUADS).map(piece_of).collect();
-    let place = |v: usize| mesh.positions_mm[v].truncate() / HALF_MM;
-    let reach = |piece: usize| {
-        let own = (0..4 * pieces.len()).filter(|v| pieces[v / 4] == piece);
-        own.map(|v| (place(v) - seeds[piece]).length()).fold(0.0, f32::max)
-    };
-    let widest = (0..count).map(reach).fold(0.0, f32::max);
-    let uvs = (0..4 * pieces.len()).map(|v| {
-        let piece = pieces[v / 4];
-        let square = Vec2::new((piece % across) as f32 + 0.5, (piece / across) as f32 + 0.5);
-        let turn = Mat2::from_angle(std::f32::consts::TAU * noise(piece, seed + 2));
-        (square + turn * (place(v) - seeds[piece]) * 0.47 / widest) / across as f32
-    });
-    mesh.uvs = uvs.collect();
-    Object::new("pieces", mesh, Material::default())
-}
-
-/// A tube along z, cut along the line where y is 0 and x > 0.
-fn tube(radius_mm: f32, length_mm: f32, around: usize) -> Object {
-    let mut mesh = Mesh::default();
-    let along = 16;
-    for j in 0..=along {
-        for i in 0..=around {
-            let (s, t) = (i as f32 / around as f32, j as f32 / along as f32);
-            // The same numbers at both ends, so that they are one line.
-            let angle = std::f32::consts::TAU * (i % around) as f32 / around as f32;
-            mesh.positions_mm.push(Vec3::new(
-                angle.cos() * radius_mm,
-                angle.sin() * radius_mm,
-                t * length_mm,
-            ));
-            mesh.uvs.push(Vec2::new(0.02 + 0.93 * s, 0.1 + 0.37 * t));
-        }
-    }
-    let at = |i: usize, j: usize| (j * (around + 1) + i) as u32;
-    for j in 0..along {
-        for i in 0..around {
-            mesh.triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
-            mesh.triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
-        }
-    }
-    Object::new("tube", mesh, Material::default())
-}
-
-/// A place of the surface with its light.
-struct Lit {
-    place_mm: Vec3,
-    area_mm2: f32,
-    after: f32,
-}
-
-/// Light, as it is read at a few places of every triangle, after heat has flowed for a Gaussian of that variance.
-fn flown(object: &Object, size: usize, variance_mm2: f32, light: impl Fn(Vec3) -> f32) -> Vec<Lit> {
-    flown_in_pose(object, None, size, variance_mm2, light)
-}
-
-/// The same on an object that has another pose when the flow is made.
-fn flown_in_pose(
-    object: &Object,
-    first_pose: Option<&Object>,
-    size: usize,
-    variance_mm2: f32,
-    light: impl Fn(Vec3) -> f32,
-) -> Vec<Lit> {
-    let atlas = Atlas::new(object, size);
-    let stretch_mm = stretch_mm_per_texel(object, &atlas);
-    let at =
-        |i: usize| atlas.surface_point(object, i).map_or(Vec4::ZERO, |p| Vec4::splat(light(p.position_mm)));
-    let before = (0..size * size).map(at).collect();
-    let variances_mm2 = [0.5 * variance_mm2, variance_mm2];
-    let first = first_pose.unwrap_or(object);
-    let mut flow = HeatFlow::new(first, &atlas, &stretch_mm_per_texel(first, &atlas), &variances_mm2);
-    if first_pose.is_some() {
-        flow = flow.for_all_poses();
-        flow.set_pose(object);
-    }
-    let fields = Fields::new(vec![before], stretch_mm);
-    let diffused = flow.diffuse(Arc::clone(&atlas.charts), fields, &variances_mm2, &Silent);
-    let weights = [[0.6, 0.2], [0.2, 0.2], [0.2, 0.6], [1.0 / 3.0, 1.0 / 3.0]];
-    let read = |triangle: usize, [b1, b2]: [f32; 2]| {
-        let [a, b, c] = object.mesh.corner_uvs(triangle);
-        let uv = a + (b - a) * b1 + (c - a) * b2;
-        let after = diffused.sample(2, 0, uv, object.charts.of_triangle[triangle]).x;
-        let place_mm = object.surface_point(triangle as u32, b1, b2).position_mm;
-        Lit { place_mm, area_mm2: 0.25 * object.mesh.area_mm2(triangle), after }
-    };
-    (0..object.mesh.triangles.len()).flat_map(|t| weights.map(|w| read(t, w))).collect()
-}
 
 /// Worst error of a bump of 1.5 mm² beside the crossing of the cuts that widens by a variance, by the peak, and all places.
 fn widened(object: &Object, size: usize, variance_mm2: f32) -> (f32, Vec<f32>) {
@@ -204,44 +49,6 @@ fn a_bump_on_a_plane_widens_whatever_the_layout() {
             assert!(apart < 0.01, "{name}, {variance_mm2}: {apart} from the whole one");
         }
     }
-}
-
-/// A plane that is drawn out to one side after the flow was made, more than it is pressed together to the other: Gaussians
-/// keep their width in millimetres, over cuts and on coarse maps, too.
-#[test]
-fn a_bump_keeps_its_width_in_another_pose() {
-    let middle = Vec3::new(0.7, -0.4, 0.0);
-    let bump = |v: f32| move |p: Vec3| 1.5 / v * (-(p - middle).length_squared() / (2.0 * v)).exp();
-    for variance_mm2 in [1.2, 6.0, 24.0] {
-        let rest = plane(in_four);
-        let mut mesh = rest.mesh.clone();
-        mesh.positions_mm.iter_mut().for_each(|p| *p *= Vec3::new(1.4, 0.85, 1.0));
-        let posed = Object::new("plane", mesh, Material::default());
-        let lit = flown_in_pose(&posed, Some(&rest), 512, variance_mm2, bump(1.5));
-        let expected = bump(1.5 + variance_mm2);
-        let worst = lit.iter().map(|l| (l.after - expected(l.place_mm)).abs()).fold(0.0, f32::max);
-        let worst = worst / expected(middle);
-        eprintln!("{variance_mm2} mm²: {worst:.4} of the peak");
-        assert!(worst < 0.012, "{variance_mm2}: {worst}");
-    }
-}
-
-/// What a pose has changed is as it was when the object comes back to rest, however fast links were in between.
-#[test]
-fn back_at_rest_heat_flows_as_before() {
-    let rest = plane(in_four);
-    let atlas = Atlas::new(&rest, 256);
-    let variances_mm2 = [1.0, 30.0];
-    let flow = HeatFlow::new(&rest, &atlas, &stretch_mm_per_texel(&rest, &atlas), &variances_mm2);
-    assert!(flow.levels.len() > 1, "there is a coarse level");
-    let mut mesh = rest.mesh.clone();
-    mesh.positions_mm.iter_mut().for_each(|p| *p *= 0.7);
-    let light: Vec<f64> = (0..256 * 256).map(|i| f64::from(noise(i / 7, 5).round())).collect();
-    let mut posed = flow.clone();
-    posed.set_pose(&Object::new("plane", mesh, Material::default()));
-    assert!(posed.flow(&light) != flow.flow(&light), "the pose shows");
-    posed.set_pose(&rest);
-    assert!(posed.flow(&light) == flow.flow(&light), "nothing is left of the pose");
 }
 
 /// Where the mean free path is twice as long, a Gaussian has four times the variance, over cuts, too; where it changes, no energy is
@@ -355,15 +162,6 @@ fn halving_adds_the_variance_that_is_left_out_of_the_time() {
             }
         }
     }
-}
-
-/// Any numbers, as a hash makes them: from 0 to 1.
-fn noise(i: usize, seed: u32) -> f32 {
-    let mut x = (i as u32).wrapping_mul(0x9E37_79B9) ^ seed.wrapping_mul(0x85EB_CA6B);
-    for factor in [0x7FEB_352D, 0x846C_A68B] {
-        x = (x ^ (x >> 15)).wrapping_mul(factor);
-    }
-    (x >> 8) as f32 / 16_777_216.0
 }
 
 /// x·(A y) is (Aᵀ x)·y, over cuts, halvings and the padding, up to rounding.

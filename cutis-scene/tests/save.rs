@@ -68,13 +68,11 @@ fn assert_same_material(a: &Material, b: &Material) {
             None => format!("{}", map.offset),
         };
         let relief = normal.as_ref().map(|map| (map.space, map.strength));
+        let scalars = [rho_s, roughness, mean_free_path_scale].map(scalar);
         let second = mixed_with.as_ref().map(|m| format!("{:?} {}", m.scattering, scalar(&m.share)));
         format!(
-            "{name} {scattering:?} {} {albedo_mix} {relief:?} {} {} {f0} {thickness_scale} {} {:?} {second:?}",
+            "{name} {scattering:?} {} {albedo_mix} {relief:?} {scalars:?} {f0} {thickness_scale} {:?} {second:?}",
             albedo.factor,
-            scalar(rho_s),
-            scalar(roughness),
-            scalar(mean_free_path_scale),
             under.iter().map(|layer| layer.factor).collect::<Vec<_>>()
         )
     };

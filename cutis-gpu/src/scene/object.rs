@@ -31,7 +31,7 @@ use cutis_render::passes::stretch::stretch_mm_per_texel;
 use cutis_render::passes::transmission::smoothing_steps;
 use cutis_render::prepare::rho_dt::{COSINES, ROUGHNESSES};
 use cutis_render::prepare::{Kernel, RhoDt};
-use cutis_render::{Diffusion, Settings, TechniqueName};
+use cutis_render::{Settings, TechniqueName};
 use cutis_scene::Object;
 use glam::Vec4;
 use std::sync::Arc;
@@ -58,10 +58,9 @@ impl Prepared {
         let atlas = Atlas::new(object, size as usize);
         let stretch_mm = stretch_mm_per_texel(object, &atlas);
         let texel_mm = median_texel_mm(&atlas.charts, &stretch_mm);
-        let flows = settings.light_inside() == TechniqueName::TextureSpace
-            && settings.diffusion == Diffusion::HeatFlow;
-        let flow =
-            flows.then(|| HeatFlow::new(object, &atlas, &stretch_mm, &kernel.variances_mm2).for_all_poses());
+        let flow = settings
+            .lets_heat_flow()
+            .then(|| HeatFlow::new(object, &atlas, &stretch_mm, &kernel.variances_mm2).for_all_poses());
         Self { atlas, texel_mm, kernel, rho_dt: RhoDt::new(object.material.f0), flow }
     }
 }

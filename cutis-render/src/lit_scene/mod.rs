@@ -20,7 +20,7 @@ use crate::passes::thin_parts::come_through;
 use crate::passes::transmission::{Bodies, Transmission};
 use crate::prepare::FilteredEnvironment;
 use crate::prepare::kernel::kernel_of;
-use crate::settings::{Aov, AovSpace, Diffusion, Settings, TechniqueName};
+use crate::settings::{Aov, AovSpace, Settings, TechniqueName};
 use crate::technique::{Inside, depth_absorption, image_space, texture_blur, texture_space, wrap};
 use crate::{PassTime, Progress, RenderError};
 use clock::Clock;
@@ -188,9 +188,7 @@ fn spread(
 
 /// What making the operator is called, and spreading light by it.
 fn names(settings: &Settings) -> [&'static str; 2] {
-    let flows =
-        settings.light_inside() == TechniqueName::TextureSpace && settings.diffusion == Diffusion::HeatFlow;
-    if flows { ["links", "heat flow"] } else { ["kernel", "blur"] }
+    if settings.lets_heat_flow() { ["links", "heat flow"] } else { ["kernel", "blur"] }
 }
 
 /// Whether light that comes through thin parts is spread with what falls in.

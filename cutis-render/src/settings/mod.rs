@@ -133,6 +133,11 @@ impl Settings {
         if self.diffusion == Diffusion::None { TechniqueName::TextureSpace } else { self.technique }
     }
 
+    /// Whether light spreads by heat flow; other techniques than `texture-space` have ways of their own.
+    pub fn lets_heat_flow(&self) -> bool {
+        self.light_inside() == TechniqueName::TextureSpace && self.diffusion == Diffusion::HeatFlow
+    }
+
     /// Checks every setting against its range.
     ///
     /// # Errors

@@ -83,7 +83,7 @@ impl GpuRenderer {
         let pixels = ready.picture(&self.gpu)?;
         let layers = ready.layers(&self.gpu, &self.passes, &settings.aovs, settings.aov_space)?;
         let reading = PassTime { name: "read back".to_owned(), time: start.elapsed() };
-        let mut told = warnings(scene, settings.technique, settings.diffusion);
+        let mut told = warnings(scene, settings);
         told.extend(ready.shared.warnings.iter().cloned());
         if settings.diffusion_report {
             told.push("the report on the diffusion is made by the processor only: --backend cpu".to_owned());

@@ -98,7 +98,8 @@ fn check_vertices(test: &str, scene: &Scene, pose: &Pose) {
         let normal = (Vec3::from_array(got.normal) - wanted.normals[v]).length();
         let tangent = (Vec4::from_array(got.tangent) - wanted.tangents[v]).length();
         worst = [worst[0].max(place), worst[1].max(normal), worst[2].max(tangent)];
-        assert_eq!([got.u, got.v], wanted.uvs[v].to_array());
+        assert_eq!([got.map_u, got.map_v], wanted.uvs[v].to_array());
+        assert_eq!(got.atlas_uv, wanted.in_atlas()[v].to_array());
     }
     eprintln!("{test}: places {} mm, normals {}, tangents {}", worst[0], worst[1], worst[2]);
     assert!(worst[0] <= tolerances::DEFORMED_MM, "{test}: {worst:?}");

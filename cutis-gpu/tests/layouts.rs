@@ -86,7 +86,12 @@ fn structs_of_poses_match_wgsl() {
 
 #[test]
 fn structs_of_the_scene_match_wgsl() {
-    same_layout!(Vertex, shaders::STRETCH, "Vertex", [position_mm, u, normal, v, tangent]);
+    same_layout!(
+        Vertex,
+        shaders::STRETCH,
+        "Vertex",
+        [position_mm, map_u, normal, map_v, tangent, atlas_uv, pad0, pad1]
+    );
     same_layout!(
         GpuLight,
         shaders::SHADOW,

@@ -39,7 +39,7 @@ fn neighbours_that_agree_about_a_shadow_are_right() {
             let Some(point) = atlas.surface_point(object, texel) else { continue };
             let Some(true_share) = rays.visible(light, &point, Vec2::ZERO) else { continue };
             asked += 1;
-            if let Some(share) = half_size.visible(l, point.uv, atlas.charts.chart[texel], false) {
+            if let Some(share) = half_size.visible(l, point.atlas_uv, atlas.charts.chart[texel], false) {
                 answered += 1;
                 wrong += usize::from(share != true_share);
             }

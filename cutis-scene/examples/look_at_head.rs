@@ -112,10 +112,10 @@ fn shade(
     let point = head.surface_point(hit.triangle, hit.b1, hit.b2);
     let material = &head.material;
     let normal = match (&material.normal, clay) {
-        (Some(map), false) => map.at(point.uv, point.normal, point.tangent),
+        (Some(map), false) => map.at(point.map_uv, point.normal, point.tangent),
         _ => point.normal,
     };
-    let albedo = if clay { Vec3::new(0.55, 0.5, 0.46) } else { material.albedo.at(point.uv) };
+    let albedo = if clay { Vec3::new(0.55, 0.5, 0.46) } else { material.albedo.at(point.map_uv) };
     let key = world_from_view * Vec3::new(-0.55, 0.6, 0.62).normalize();
     let fill = world_from_view * Vec3::new(0.75, 0.1, 0.5).normalize();
     let mut light = 2.1 * lambert(bvh, &point, normal, key) + 0.45 * lambert(bvh, &point, normal, fill);
@@ -123,9 +123,9 @@ fn shade(
     let mut colour = albedo * light;
     if !clay {
         let half = (key - dir).normalize();
-        let m = material.roughness.at(point.uv);
+        let m = material.roughness.at(point.map_uv);
         let gloss =
-            0.028 * material.rho_s.at(point.uv) * normal.dot(half).max(0.0).powf(2.0 / (m * m)) / (m * m);
+            0.028 * material.rho_s.at(point.map_uv) * normal.dot(half).max(0.0).powf(2.0 / (m * m)) / (m * m);
         colour += Vec3::splat(2.1 * gloss * lambert(bvh, &point, normal, key));
     }
     colour
@@ -190,7 +190,7 @@ fn report_texels(head: &Object) {
     let mut sizes: Vec<(f32, f32)> = (0..mesh.triangles.len())
         .filter(face)
         .map(|t| {
-            let [a, b, c] = mesh.corner_uvs(t);
+            let [a, b, c] = mesh.corner_map_uvs(t);
             let texels = 0.5 * (b - a).perp_dot(c - a).abs() * 2048.0 * 2048.0;
             ((mesh.area_mm2(t) / texels).sqrt(), mesh.area_mm2(t))
         })
@@ -223,7 +223,7 @@ fn layout(head: &Object) -> image::RgbImage {
     const SIZE: f32 = 1400.0;
     let mut image = image::RgbImage::new(SIZE as u32, SIZE as u32);
     for t in 0..head.mesh.triangles.len() {
-        let c = head.mesh.corner_uvs(t).map(|uv| uv * SIZE - 0.5);
+        let c = head.mesh.corner_map_uvs(t).map(|uv| uv * SIZE - 0.5);
         let hue = head.charts.of_triangle[t].wrapping_mul(0x9e37_79b9).to_be_bytes();
         let colour = image::Rgb([90 + hue[0] / 2, 90 + hue[1] / 2, 90 + hue[2] / 2]);
         let (lo, hi) = (c[0].min(c[1]).min(c[2]).ceil(), c[0].max(c[1]).max(c[2]));

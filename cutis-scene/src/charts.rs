@@ -46,14 +46,14 @@ impl Charts {
     /// Whether all coordinates lie in the unit square, so that the texture is used at most once.
     pub fn inside_unit_square(mesh: &Mesh) -> bool {
         // A hair of slack: exporters round 1 up.
-        mesh.uvs.iter().all(|uv| uv.min_element() >= -1e-4 && uv.max_element() <= 1.0001)
+        mesh.in_atlas().iter().all(|uv| uv.min_element() >= -1e-4 && uv.max_element() <= 1.0001)
     }
 
     /// Fraction of the used texture that more than one triangle claims, counted on a grid of `size`² sample points.
     pub fn overlap_fraction(mesh: &Mesh, size: u32) -> f32 {
         let mut claims = vec![0u8; (size * size) as usize];
         for t in 0..mesh.triangles.len() {
-            for_each_sample_inside(mesh.corner_uvs(t), size, |index| {
+            for_each_sample_inside(mesh.corner_atlas_uvs(t), size, |index| {
                 claims[index] = claims[index].saturating_add(1)
             });
         }
@@ -100,7 +100,7 @@ fn sorted(uses: EdgeUses) -> Vec<SharedEdge> {
 fn edge_uvs(mesh: &Mesh, point_of_vertex: &[u32], (t, corner): (u32, u8), a: u32, b: u32) -> [Vec2; 2] {
     let triangle = mesh.triangles[t as usize];
     let ends = [triangle[usize::from(corner)], triangle[(usize::from(corner) + 1) % 3]];
-    let uvs = ends.map(|v| mesh.uvs[v as usize]);
+    let uvs = ends.map(|v| mesh.in_atlas()[v as usize]);
     debug_assert!(
         ends.iter().all(|&v| [a, b].contains(&point_of_vertex[v as usize])),
         "the edge has these ends"

@@ -122,14 +122,18 @@ impl Border {
 fn cap(mesh: &mut Mesh, hole: &[u32]) {
     let positions: Vec<Vec3> = hole.iter().map(|&v| mesh.positions_mm[v as usize]).collect();
     let middle = positions.iter().sum::<Vec3>() / positions.len() as f32;
-    let place = mesh.uvs.get(hole[0] as usize).copied().unwrap_or(Vec2::ZERO);
+    let place_in = |uvs: &[Vec2]| uvs.get(hole[0] as usize).copied().unwrap_or(Vec2::ZERO);
+    let (map_uv, atlas_uv) = (place_in(&mesh.uvs), mesh.atlas_uvs.as_deref().map(place_in));
     for (i, &from) in positions.iter().enumerate() {
         let to = positions[(i + 1) % positions.len()];
         let normal = (from - middle).cross(to - middle).normalize_or(Vec3::Y);
         let base = mesh.positions_mm.len() as u32;
         mesh.positions_mm.extend([middle, from, to]);
         mesh.normals.extend([normal; 3]);
-        mesh.uvs.extend([place; 3]);
+        mesh.uvs.extend([map_uv; 3]);
+        if let Some((uvs, uv)) = mesh.atlas_uvs.as_mut().zip(atlas_uv) {
+            uvs.extend([uv; 3]);
+        }
         mesh.triangles.push([base, base + 1, base + 2]);
     }
     // Computed again for the whole mesh, displacements left behind.
@@ -164,7 +168,9 @@ mod tests {
         let mut mesh = cube();
         mesh.triangles.drain(0..4);
         assert_eq!(check_closed(&mesh), Err(OpenMesh::Holes { edges: 8, holes: 2 }));
+        mesh.atlas_uvs = Some(mesh.uvs.clone());
         let closed = close_holes(&Object::new("cube", mesh, Material::default())).unwrap();
+        assert_eq!(closed.mesh.in_atlas(), closed.mesh.uvs);
         assert_eq!(check_closed(&closed.mesh), Ok(()));
         assert!(closed.closed);
         // 2³, outwards.

@@ -45,6 +45,7 @@ pub fn deformed(rest: &Mesh, pose: &MeshPose) -> Mesh {
         normals: frames.iter().map(|f| f.normal).collect(),
         tangents: frames.iter().map(|f| f.tangent).collect(),
         uvs: rest.uvs.clone(),
+        atlas_uvs: rest.atlas_uvs.clone(),
         triangles: rest.triangles.clone(),
         morph_targets: Vec::new(),
         skeleton: None,

@@ -1,4 +1,5 @@
-//! A triangle mesh as it came from its file: split vertices, millimetres, one UV set.
+//! A triangle mesh as it came from its file: split vertices, millimetres, texture coordinates of its maps and, where those
+//! cannot carry light, of an atlas.
 
 use crate::Skeleton;
 use glam::{Vec2, Vec3, Vec4};
@@ -13,8 +14,12 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Unit tangents along +u; `w` is the handedness of the bitangent (MikkTSpace). Empty until computed.
     pub tangents: Vec<Vec4>,
-    /// Texture coordinates: (0, 0) is the corner of the image's first pixel, v grows with its rows.
+    /// Texture coordinates of the material's maps: (0, 0) is the corner of the image's first pixel, v grows with its rows;
+    /// outside the unit square textures repeat.
     pub uvs: Vec<Vec2>,
+    /// Where each vertex lies in the maps of light, which need every place once and inside the unit square. `None` where
+    /// `uvs` are like that.
+    pub atlas_uvs: Option<Vec<Vec2>>,
     /// Vertex indices, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
     /// Displacements that a file offers for this mesh.
@@ -44,9 +49,20 @@ impl Mesh {
         self.triangles[triangle].map(|v| self.positions_mm[v as usize])
     }
 
-    /// Texture coordinates of a triangle's corners.
-    pub fn corner_uvs(&self, triangle: usize) -> [Vec2; 3] {
+    /// Where each vertex lies in the maps of light.
+    pub fn in_atlas(&self) -> &[Vec2] {
+        self.atlas_uvs.as_deref().unwrap_or(&self.uvs)
+    }
+
+    /// A triangle's corners in the material's maps.
+    pub fn corner_map_uvs(&self, triangle: usize) -> [Vec2; 3] {
         self.triangles[triangle].map(|v| self.uvs[v as usize])
+    }
+
+    /// A triangle's corners in the maps of light.
+    pub fn corner_atlas_uvs(&self, triangle: usize) -> [Vec2; 3] {
+        let uvs = self.in_atlas();
+        self.triangles[triangle].map(|v| uvs[v as usize])
     }
 
     /// Area of a triangle in mm².

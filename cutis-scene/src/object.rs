@@ -44,8 +44,10 @@ pub struct SurfacePoint {
     pub normal: Vec3,
     /// Interpolated tangent, `w` the handedness.
     pub tangent: Vec4,
-    /// Texture coordinates.
-    pub uv: Vec2,
+    /// Place in the material's maps.
+    pub map_uv: Vec2,
+    /// Place in the maps of light.
+    pub atlas_uv: Vec2,
 }
 
 impl Object {
@@ -55,7 +57,11 @@ impl Object {
     /// # Panics
     /// If the mesh breaks its invariants: one UV per vertex, indices in range, finite positions. Readers check these.
     pub fn new(name: impl Into<String>, mut mesh: Mesh, material: Material) -> Self {
-        assert_eq!(mesh.uvs.len(), mesh.positions_mm.len(), "every vertex has texture coordinates");
+        let vertices = mesh.positions_mm.len();
+        assert!(
+            [mesh.uvs.len(), mesh.in_atlas().len()] == [vertices; 2],
+            "every vertex has texture coordinates"
+        );
         if mesh.normals.len() != mesh.positions_mm.len() {
             mesh.normals = smooth_normals(&mesh, &weld(&mesh.positions_mm));
             // They were offsets from other normals.
@@ -112,10 +118,14 @@ impl Object {
         self.rest.get_or_insert_with(|| Arc::new(before));
     }
 
-    /// Texture coordinates at barycentric coordinates `(b1, b2)` of a triangle.
-    pub fn uv_at(&self, triangle: u32, b1: f32, b2: f32) -> Vec2 {
-        let [a, b, c] = self.mesh.corner_uvs(triangle as usize);
-        a * (1.0 - b1 - b2) + b * b1 + c * b2
+    /// Place in the material's maps at barycentric coordinates `(b1, b2)` of a triangle.
+    pub fn map_uv_at(&self, triangle: u32, b1: f32, b2: f32) -> Vec2 {
+        between(self.mesh.corner_map_uvs(triangle as usize), b1, b2)
+    }
+
+    /// Place in the maps of light at barycentric coordinates `(b1, b2)` of a triangle.
+    pub fn atlas_uv_at(&self, triangle: u32, b1: f32, b2: f32) -> Vec2 {
+        between(self.mesh.corner_atlas_uvs(triangle as usize), b1, b2)
     }
 
     /// The surface at barycentric coordinates `(b1, b2)` of a triangle (weights of its second and third corner).
@@ -135,7 +145,6 @@ impl Object {
         let flat_normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or(normals[0]);
         let lift = |i: usize| -normals[i] * (position_mm - corners[i]).dot(normals[i]).min(0.0);
         let tangent = (0..3).fold(Vec4::ZERO, |sum, i| sum + mesh.tangents[vertices[i]] * weights[i]);
-        let uv = (0..3).fold(Vec2::ZERO, |sum, i| sum + mesh.uvs[vertices[i]] * weights[i]);
         let normal = mix3(normals).normalize_or(flat_normal);
         SurfacePoint {
             position_mm,
@@ -143,7 +152,8 @@ impl Object {
             flat_normal,
             normal,
             tangent: orthonormal_tangent(tangent, normal),
-            uv,
+            map_uv: self.map_uv_at(triangle, b1, b2),
+            atlas_uv: self.atlas_uv_at(triangle, b1, b2),
         }
     }
 }
@@ -157,7 +167,8 @@ impl SurfacePoint {
             flat_normal: a.flat_normal + b.flat_normal,
             normal: a.normal + b.normal,
             tangent: a.tangent + b.tangent,
-            uv: a.uv + b.uv,
+            map_uv: a.map_uv + b.map_uv,
+            atlas_uv: a.atlas_uv + b.atlas_uv,
         };
         let mut count = 0.0;
         let sum = points.inspect(|_| count += 1.0).reduce(add)?;
@@ -168,9 +179,14 @@ impl SurfacePoint {
             flat_normal: sum.flat_normal.normalize_or(normal),
             normal,
             tangent: orthonormal_tangent(sum.tangent, normal),
-            uv: sum.uv / count,
+            map_uv: sum.map_uv / count,
+            atlas_uv: sum.atlas_uv / count,
         })
     }
+}
+
+fn between([a, b, c]: [Vec2; 3], b1: f32, b2: f32) -> Vec2 {
+    a * (1.0 - b1 - b2) + b * b1 + c * b2
 }
 
 fn orthonormal_tangent(tangent: Vec4, normal: Vec3) -> Vec4 {

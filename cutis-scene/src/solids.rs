@@ -230,10 +230,10 @@ impl<'a> Solids<'a> {
         found.then(|| nearest2.sqrt())
     }
 
-    /// Texture coordinates of a meeting.
-    pub fn uv(&self, meeting: &Meeting) -> Vec2 {
+    /// Where a meeting lies in the maps of light.
+    pub fn atlas_uv(&self, meeting: &Meeting) -> Vec2 {
         let [b1, b2] = meeting.weights.map(|w| w as f32);
-        self.objects[meeting.object as usize].uv_at(meeting.triangle, b1, b2)
+        self.objects[meeting.object as usize].atlas_uv_at(meeting.triangle, b1, b2)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::Material;
 use crate::head::HeadDetail;
+use crate::read::AtlasChoice;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -16,6 +17,8 @@ pub enum MeshOrigin {
         millimetres_per_unit: Option<f32>,
         /// Whether v was turned around against the convention of the format.
         flip_v: bool,
+        /// Where light lies.
+        atlas: AtlasChoice,
     },
     /// The head made by code.
     BuiltInHead(HeadDetail),

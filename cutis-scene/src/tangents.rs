@@ -39,6 +39,9 @@ fn split(mesh: &mut Mesh, vertex: u32) -> u32 {
     mesh.positions_mm.push(mesh.positions_mm[v]);
     mesh.normals.push(mesh.normals[v]);
     mesh.uvs.push(mesh.uvs[v]);
+    if let Some(uvs) = &mut mesh.atlas_uvs {
+        uvs.push(uvs[v]);
+    }
     mesh.tangents.push(Vec4::ZERO);
     for target in &mut mesh.morph_targets {
         target.position_offsets_mm.push(target.position_offsets_mm[v]);
@@ -125,8 +128,10 @@ mod tests {
         mesh.normals.extend([Vec3::Z; 2]);
         mesh.uvs.extend([Vec2::ZERO, Vec2::new(1.0, 0.0)]);
         mesh.triangles.extend([[0, 4, 5], [0, 5, 1]]);
+        mesh.atlas_uvs = Some((0..6).map(|v| Vec2::splat(v as f32)).collect());
         add_tangents(&mut mesh);
         assert_eq!(mesh.positions_mm.len(), 8, "the two shared vertices are split");
+        assert_eq!(mesh.in_atlas()[6..], [Vec2::ZERO, Vec2::ONE], "where they were in the atlas");
         for t in &mesh.triangles {
             let signs = t.map(|v| mesh.tangents[v as usize].w);
             assert!(signs.iter().all(|&w| w == signs[0]), "{signs:?}");

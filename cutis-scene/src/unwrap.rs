@@ -1,4 +1,5 @@
-//! An atlas for meshes that come without one: charts, flattened and packed, so that every surface can carry a map.
+//! An atlas for meshes whose texture coordinates cannot carry light: charts, flattened and packed, so that every place has
+//! texels of its own.
 //!
 //! Least-squares conformal maps (Lévy, Petitjean, Ray & Maillot 2002) by the crate `uvunwrap`. What was made can be kept in a
 //! folder, by a number that follows from positions and triangles.
@@ -29,27 +30,23 @@ pub struct Unwrapped {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Gives a mesh texture coordinates of its own, none of which overlap; what it had is lost. Atlases are looked for and kept in
-/// `folder`; `tell` is told how far the work is, in words, if it takes long enough to wonder.
+/// An atlas of a mesh in which nothing overlaps. Atlases are looked for and kept in `folder`; `tell` is told how far the work
+/// is, in words, if it takes long enough to wonder.
 ///
 /// # Errors
 /// In words, if the mesh cannot be cut into charts.
-pub fn unwrap(mesh: &mut Mesh, folder: Option<&Path>, tell: Option<fn(&str)>) -> Result<(), String> {
+pub fn unwrap(mesh: &Mesh, folder: Option<&Path>, tell: Option<fn(&str)>) -> Result<Unwrapped, String> {
     let kept = folder.map(|folder| folder.join(format!("{:016x}.atlas", number_of(mesh))));
     let read = kept.as_deref().and_then(|path| read(path, mesh));
-    let unwrapped = match read {
-        Some(unwrapped) => unwrapped,
-        None => {
-            let made = Unwrapped::of(mesh, tell)?;
-            // A folder that cannot be written costs time, not the picture.
-            if let Some(Err(error)) = kept.as_deref().map(|path| write(path, &made)) {
-                tracing::debug!("the atlas is not kept: {error}");
-            }
-            made
-        }
-    };
-    split(mesh, &unwrapped);
-    Ok(())
+    if let Some(unwrapped) = read {
+        return Ok(unwrapped);
+    }
+    let made = Unwrapped::of(mesh, tell)?;
+    // A folder that cannot be written costs time, not the picture.
+    if let Some(Err(error)) = kept.as_deref().map(|path| write(path, &made)) {
+        tracing::debug!("the atlas is not kept: {error}");
+    }
+    Ok(made)
 }
 
 impl Unwrapped {
@@ -95,30 +92,31 @@ impl Unwrapped {
         }
         Ok(unwrapped)
     }
-}
 
-/// Vertices as the atlas has them; each keeps what it had before.
-fn split(mesh: &mut Mesh, unwrapped: &Unwrapped) {
-    fn taken<T: Copy>(values: &mut Vec<T>, vertices: &[u32]) {
-        if !values.is_empty() {
-            *values = vertices.iter().map(|&v| values[v as usize]).collect();
+    /// Lays light as this atlas has it. Vertices are split where it is cut and keep what they had, among it their places in
+    /// the material's maps.
+    pub fn lay(self, mesh: &mut Mesh) {
+        fn taken<T: Copy>(values: &mut Vec<T>, vertices: &[u32]) {
+            if !values.is_empty() {
+                *values = vertices.iter().map(|&v| values[v as usize]).collect();
+            }
         }
+        let vertices = &self.vertices;
+        taken(&mut mesh.positions_mm, vertices);
+        taken(&mut mesh.normals, vertices);
+        taken(&mut mesh.tangents, vertices);
+        taken(&mut mesh.uvs, vertices);
+        for target in &mut mesh.morph_targets {
+            taken(&mut target.position_offsets_mm, vertices);
+            taken(&mut target.normal_offsets, vertices);
+            taken(&mut target.tangent_offsets, vertices);
+        }
+        if let Some(skeleton) = &mut mesh.skeleton {
+            taken(&mut skeleton.influences, vertices);
+        }
+        mesh.atlas_uvs = Some(self.uvs);
+        mesh.triangles = self.triangles;
     }
-    let vertices = &unwrapped.vertices;
-    taken(&mut mesh.positions_mm, vertices);
-    taken(&mut mesh.normals, vertices);
-    // They follow the texture.
-    mesh.tangents.clear();
-    for target in &mut mesh.morph_targets {
-        taken(&mut target.position_offsets_mm, vertices);
-        taken(&mut target.normal_offsets, vertices);
-        target.tangent_offsets.clear();
-    }
-    if let Some(skeleton) = &mut mesh.skeleton {
-        taken(&mut skeleton.influences, vertices);
-    }
-    mesh.uvs.clone_from(&unwrapped.uvs);
-    mesh.triangles.clone_from(&unwrapped.triangles);
 }
 
 /// A number that follows from positions and triangles (Fowler, Noll & Vo).
@@ -174,6 +172,7 @@ mod tests {
     use super::*;
     use crate::charts::Charts;
     use crate::validation::shapes;
+    use crate::{Influence, MorphTarget, Skeleton};
     use glam::Vec3;
 
     fn bare() -> Mesh {
@@ -186,7 +185,7 @@ mod tests {
     fn a_body_without_an_atlas_gets_one() {
         let before = bare();
         let mut mesh = before.clone();
-        split(&mut mesh, &Unwrapped::of(&before, None).unwrap());
+        Unwrapped::of(&before, None).unwrap().lay(&mut mesh);
         assert_eq!(mesh.triangles.len(), before.triangles.len());
         for t in 0..mesh.triangles.len() {
             assert_eq!(mesh.corners_mm(t), before.corners_mm(t), "triangle {t} is where it was");
@@ -195,11 +194,42 @@ mod tests {
         assert!(Charts::overlap_fraction(&mesh, 512) < 1e-3);
         let used: f32 = (0..mesh.triangles.len())
             .map(|t| {
-                let [a, b, c] = mesh.corner_uvs(t);
+                let [a, b, c] = mesh.corner_atlas_uvs(t);
                 0.5 * (b - a).perp_dot(c - a).abs()
             })
             .sum();
         assert!(used > 0.4, "{used} of the texture is used");
+    }
+
+    /// Where the atlas is cut a vertex becomes two, and both have all that the one had.
+    #[test]
+    fn split_vertices_keep_what_they_had() {
+        let mut mesh = bare();
+        let places = mesh.positions_mm.clone();
+        mesh.uvs = places.iter().map(|p| p.truncate()).collect();
+        mesh.normals = places.iter().map(|&p| p * 2.0).collect();
+        mesh.tangents = places.iter().map(|&p| p.extend(1.0)).collect();
+        mesh.morph_targets.push(MorphTarget {
+            position_offsets_mm: places.iter().map(|&p| p * 3.0).collect(),
+            normal_offsets: places.iter().map(|&p| p * 4.0).collect(),
+            tangent_offsets: places.iter().map(|&p| p * 5.0).collect(),
+            ..MorphTarget::default()
+        });
+        let influences =
+            places.iter().map(|p| Influence { weights: p.extend(0.0).to_array(), ..Influence::default() });
+        mesh.skeleton = Some(Skeleton { influences: influences.collect(), ..Skeleton::default() });
+        Unwrapped::of(&mesh, None).unwrap().lay(&mut mesh);
+        assert!(mesh.positions_mm.len() > places.len(), "somewhere it is cut");
+        let (target, skeleton) = (&mesh.morph_targets[0], mesh.skeleton.as_ref().unwrap());
+        for (v, &p) in mesh.positions_mm.iter().enumerate() {
+            assert_eq!(
+                (mesh.uvs[v], mesh.normals[v], mesh.tangents[v]),
+                (p.truncate(), p * 2.0, p.extend(1.0))
+            );
+            assert_eq!(target.position_offsets_mm[v], p * 3.0);
+            assert_eq!((target.normal_offsets[v], target.tangent_offsets[v]), (p * 4.0, p * 5.0));
+            assert_eq!(skeleton.influences[v].weights, p.extend(0.0).to_array());
+        }
     }
 
     #[test]

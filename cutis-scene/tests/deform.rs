@@ -102,7 +102,7 @@ fn stretch_of_a_grown_surface_grows_with_it() {
     let grown = head.deformed(&morph("grow", 0.5));
     // |dX/du| of every triangle, the measure that every blur is scaled by.
     let along_u = |mesh: &Mesh, t: usize| {
-        let ([a, b, c], [p, q, r]) = (mesh.corners_mm(t), mesh.corner_uvs(t));
+        let ([a, b, c], [p, q, r]) = (mesh.corners_mm(t), mesh.corner_map_uvs(t));
         let (d1, d2) = (q - p, r - p);
         (((b - a) * d2.y - (c - a) * d1.y) / d1.perp_dot(d2)).length()
     };

@@ -63,6 +63,16 @@ fn scene_files() {
         ),
         ("nan-unit", "[mesh]\npath = \"square.obj\"\nmillimetres_per_unit = nan".to_owned(), "finite number"),
         ("flip", scene("flip_v = \"yes\""), "line 4, key `mesh.flip_v`: must be true or false, found string"),
+        (
+            "atlas",
+            scene("atlas = \"old\""),
+            "line 4, key `mesh.atlas`: `old` is not known; `own` and `new` are",
+        ),
+        (
+            "atlas-builtin",
+            "[mesh]\nbuiltin = \"head\"\natlas = \"new\"".to_owned(),
+            "`new` is for mesh files",
+        ),
         ("unknown-table", scene("[lamp]"), "key `lamp`: is not known; did you mean"),
         (
             "unknown-key",

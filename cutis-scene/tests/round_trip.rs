@@ -94,7 +94,7 @@ fn overlap_and_coordinates_outside_the_square_are_told() {
     let udim = SQUARE_OBJ.replace("vt 0 ", "vt 2 ").replace("vt 1 ", "vt 3 ");
     let scene = read(folder.path(), "udim.obj", udim);
     assert!(says(&scene, "moved back"), "{:?}", scene.warnings);
-    assert_eq!(scene.objects[0].mesh.uvs[0], Vec2::new(0.0, 1.0));
+    assert_eq!(scene.objects[0].mesh.in_atlas()[0], Vec2::new(0.0, 1.0));
 }
 
 #[test]

@@ -19,6 +19,7 @@ use cutis_optics::presets;
 use cutis_render::film::ToneMapper;
 use cutis_render::settings::Quality;
 use cutis_render::{Aov, AovSpace, Diffusion, Settings, TechniqueName};
+use cutis_scene::AtlasChoice;
 pub use diff::DiffArgs;
 pub use profile::{METHODS, ProfileArgs};
 use std::fmt::Display;
@@ -173,6 +174,10 @@ pub struct RenderArgs {
     /// Material of all objects, by the name of a preset, instead of their own scattering
     #[arg(long, value_name = "NAME", value_parser = names(presets::all().iter().map(|preset| preset.name)))]
     pub material: Option<String>,
+    /// Where light lies: own: where the mesh's texture coordinates say, if they can carry it; new: in an atlas that is made, with
+    /// texels of one size [own or new, default: what the scene file says, else own]
+    #[arg(long, value_name = "NAME", value_parser = names(AtlasChoice::ALL.map(AtlasChoice::name)))]
+    pub atlas: Option<String>,
     /// Diffuse colour texture for all objects, instead of their own
     #[arg(long, value_name = "FILE")]
     pub albedo: Option<PathBuf>,

@@ -8,8 +8,8 @@ use crate::techniques::{fulfilled, idle, wishes};
 use cutis_render::film::{Bloom, Checkpoint, Film, Format, check_output, layer_path};
 use cutis_render::settings::{Quality, TechniqueSettings};
 use cutis_render::{Aov, Settings, TechniqueName};
-use cutis_scene::ReadOptions;
 use cutis_scene::head::HeadDetail;
+use cutis_scene::{AtlasChoice, ReadOptions};
 use miette::{Result, miette};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -163,6 +163,7 @@ fn source(args: &RenderArgs, paper: Option<Paper>) -> Result<SceneSource> {
     maps.into_iter().chain([&args.scene]).flatten().try_for_each(|path| must_exist(path))?;
     let options = ReadOptions {
         millimetres_per_unit: millimetres,
+        atlas: atlas(args)?,
         albedo: args.albedo.clone(),
         normal: args.normal.clone(),
         specular: args.specular.clone(),
@@ -177,6 +178,14 @@ fn source(args: &RenderArgs, paper: Option<Paper>) -> Result<SceneSource> {
         longest_side_mm: args.longest_side.or(of_paper),
         time_s,
     })
+}
+
+fn atlas(args: &RenderArgs) -> Result<Option<AtlasChoice>> {
+    let choice = AtlasChoice::ALL.into_iter().find(|choice| Some(choice.name()) == args.atlas.as_deref());
+    if args.scene.is_none() && choice == Some(AtlasChoice::New) {
+        return Err(miette!("--atlas new is for mesh files; the built-in head has an atlas of its own"));
+    }
+    Ok(choice)
 }
 
 fn head_detail(args: &RenderArgs) -> Result<HeadDetail> {

@@ -1,7 +1,7 @@
 // What falls on a place from all around: the twin of `from_environment` in cutis-render's pass `irradiance`.
 
-fn from_environment(uv: vec2f, chart: u32, smooth_normal: vec3f, normal: vec3f) -> vec3f {
-    let texels = around(uv, textureDimensions(ambient));
+fn from_environment(atlas_uv: vec2f, chart: u32, smooth_normal: vec3f, normal: vec3f) -> vec3f {
+    let texels = around(atlas_uv, textureDimensions(ambient));
     let weights = chart_weights(ambient_charts, texels, chart);
     var bent = smooth_normal;
     var open = 1.0;

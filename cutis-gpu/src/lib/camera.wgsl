@@ -18,8 +18,9 @@ struct Seen {
     @location(0) position_mm: vec3f,
     @location(1) normal: vec3f,
     @location(2) tangent: vec4f,
-    @location(3) uv: vec2f,
-    @location(4) @interpolate(flat) chart: u32,
+    @location(3) map_uv: vec2f,
+    @location(4) atlas_uv: vec2f,
+    @location(5) @interpolate(flat) chart: u32,
 }
 
 fn seen_vertex(camera: Camera, vertex: Vertex, chart: u32) -> Seen {
@@ -29,5 +30,5 @@ fn seen_vertex(camera: Camera, vertex: Vertex, chart: u32) -> Seen {
     let x = dot(camera.right, p) / dot(camera.right, camera.right);
     let y = dot(camera.up, p) / dot(camera.up, camera.up);
     return Seen(vec4f(x, y, z, depth_mm), vertex.position_mm, vertex.normal, vertex.tangent,
-        vec2f(vertex.u, vertex.v), chart);
+        vec2f(vertex.map_u, vertex.map_v), vertex.atlas_uv, chart);
 }

@@ -48,7 +48,7 @@ fn map_half_width_mm(map: LightMap, depth_mm: f32) -> f32 {
 }
 
 /// Where a point falls on the map: (0, 0) is the corner of its first texel.
-fn map_uv(map: LightMap, axes_mm: vec3f) -> vec2f {
+fn light_map_uv(map: LightMap, axes_mm: vec3f) -> vec2f {
     let place = axes_mm.xy / map_half_width_mm(map, axes_mm.z);
     return vec2f(0.5 + 0.5 * place.x, 0.5 - 0.5 * place.y);
 }

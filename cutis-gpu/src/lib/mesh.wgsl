@@ -2,10 +2,13 @@
 
 struct Vertex {
     position_mm: vec3f,
-    u: f32,
+    map_u: f32,
     normal: vec3f,
-    v: f32,
+    map_v: f32,
     tangent: vec4f,
+    atlas_uv: vec2f,
+    pad0: u32,
+    pad1: u32,
 }
 
 /// Three vertices, and the chart in w.

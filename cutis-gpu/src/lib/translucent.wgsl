@@ -8,7 +8,7 @@ struct LightFacing {
     /// Whether the map shows nothing nearer to the light than the point: it lies at a silhouette, and what the texel holds is
     /// behind it.
     itself: bool,
-    uv: vec2f,
+    atlas_uv: vec2f,
     chart: u32,
     /// Distance m through the body towards the light, mm.
     distance_mm: f32,
@@ -30,7 +30,7 @@ fn light_facing_surface(
     }
     let axes_mm = in_map_axes(map, point_mm);
     let size = vec2f(textureDimensions(depths));
-    let texel = vec2i(floor(map_uv(map, axes_mm) * size));
+    let texel = vec2i(floor(light_map_uv(map, axes_mm) * size));
     if any(texel < vec2i(0)) || any(texel >= vec2i(size)) {
         return there;
     }
@@ -41,7 +41,7 @@ fn light_facing_surface(
     // What is along the ray for a millimetre of the map's depth.
     let ray_mm_per_depth_mm = select(length(axes_mm) / axes_mm.z, 1.0, map.directional);
     there.uncertain_mm = 1.42 * map_half_width_mm(map, depth_mm) / size.x;
-    there.uv = unpack2x16unorm(surface.x);
+    there.atlas_uv = unpack2x16unorm(surface.x);
     there.chart = surface.y & 65535u;
     there.distance_mm = max(axes_mm.z - depth_mm, 0.0) * ray_mm_per_depth_mm;
     return there;

@@ -7,12 +7,14 @@ use crate::map::Map;
 use crate::passes::{Samplers, over_charts};
 use crate::pipeline::{Blueprint, Bound, Pipeline};
 use crate::readback::read_layer;
-use crate::scene::charts::ChartTexture;
+use crate::scene::charts::{ChartTexture, coordinates_texture};
 use crate::scene::geometry::Geometry;
 use crate::scene::material::MaterialMaps;
 use crate::shaders;
 use crate::step::Step;
 use crate::{Gpu, GpuError};
+use cutis_render::passes::atlas::Atlas;
+use cutis_scene::Object;
 use glam::{Vec2, Vec3, Vec4};
 use wgpu::TextureFormat as Format;
 
@@ -27,19 +29,23 @@ pub struct AtlasPass {
 pub struct AtlasMaps {
     /// Position in mm as bits, smooth normal packed in w.
     pub places: Map,
-    /// Normal with relief and texture coordinates, packed.
+    /// Normal with relief, packed.
     pub reliefs: Map,
     /// Millimetres per texel along u and v, lift in mm in z.
     pub stretch: Map,
+    /// Place in the material's maps and in those of light, packed. No deformation moves them.
+    pub coordinates: Map,
 }
 
 impl AtlasMaps {
-    /// Of `size` texels.
-    pub fn new(gpu: &Gpu, size: u32) -> Self {
+    /// For the atlas of an object.
+    pub fn new(gpu: &Gpu, object: &Object, atlas: &Atlas) -> Self {
+        let size = atlas.size as u32;
         Self {
             places: Map::square(gpu, "places", size, 1, Format::Rgba32Uint),
-            reliefs: Map::square(gpu, "reliefs", size, 1, Format::Rg32Uint),
+            reliefs: Map::square(gpu, "reliefs", size, 1, Format::R32Uint),
             stretch: Map::square(gpu, "stretch", size, 1, Format::Rgba16Float),
+            coordinates: coordinates_texture(gpu, object, atlas),
         }
     }
 }
@@ -70,7 +76,7 @@ fn unpack_unit(code: u32) -> Vec3 {
 impl AtlasPass {
     /// Compiles it.
     pub fn new(gpu: &Gpu) -> Self {
-        let targets = &[Format::Rgba32Uint, Format::Rg32Uint, Format::Rgba16Float];
+        let targets = &[Format::Rgba32Uint, Format::R32Uint, Format::Rgba16Float];
         let entries = ["cover_run", "unroll"];
         let blueprint = Blueprint {
             name: "atlas",

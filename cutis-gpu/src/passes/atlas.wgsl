@@ -17,8 +17,8 @@ const MIN_STRETCH_MM: f32 = 1e-3;
 struct Unrolled {
     /// Position in mm as bits in xyz; smooth normal in w.
     @location(0) place: vec4u,
-    /// Normal with relief; texture coordinates.
-    @location(1) relief: vec2u,
+    /// Normal with relief.
+    @location(1) relief: u32,
     /// Millimetres per texel along u and v; distance to the surface that the normals describe, mm.
     @location(2) stretch: vec4f,
 }
@@ -27,7 +27,7 @@ struct Unrolled {
 fn unroll(@builtin(position) position: vec4f) -> Unrolled {
     let code = textureLoad(surface, vec2i(position.xy), 0);
     if code.x == NO_TRIANGLE {
-        return Unrolled(vec4u(0u), vec2u(0u), vec4f(0.0));
+        return Unrolled(vec4u(0u), 0u, vec4f(0.0));
     }
     let b = unpack2x16unorm(code.y);
     let weights = vec3f(1.0 - b.x - b.y, b.x, b.y);
@@ -39,16 +39,17 @@ fn unroll(@builtin(position) position: vec4f) -> Unrolled {
     let flat = unit_or(cross(v1.position_mm - v0.position_mm, v2.position_mm - v0.position_mm), v0.normal);
     let normal = unit_or(v0.normal * weights.x + v1.normal * weights.y + v2.normal * weights.z, flat);
     let tangent = v0.tangent * weights.x + v1.tangent * weights.y + v2.tangent * weights.z;
-    let uv = vec2f(v0.u, v0.v) * weights.x + vec2f(v1.u, v1.v) * weights.y + vec2f(v2.u, v2.v) * weights.z;
+    let map_uv = vec2f(v0.map_u, v0.map_v) * weights.x + vec2f(v1.map_u, v1.map_v) * weights.y
+        + vec2f(v2.map_u, v2.map_v) * weights.z;
     let lifted = lift(v0, place_mm) * weights.x + lift(v1, place_mm) * weights.y + lift(v2, place_mm) * weights.z;
-    let stored = textureSampleLevel(relief_map, repeating, uv, 0.0).xyz;
+    let stored = textureSampleLevel(relief_map, repeating, map_uv, 0.0).xyz;
     let shading = with_relief(material, stored, normal, tangent);
     let squared = squared_stretch_mm2[corners.x] * weights.x + squared_stretch_mm2[corners.y] * weights.y
         + squared_stretch_mm2[corners.z] * weights.z;
     let stretch = max(sqrt(max(squared, vec2f(0.0))) / f32(textureDimensions(surface).x), vec2f(MIN_STRETCH_MM));
     return Unrolled(
         vec4u(bitcast<vec3u>(place_mm), pack_unit(normal)),
-        vec2u(pack_unit(shading), pack2x16unorm(uv)),
+        pack_unit(shading),
         vec4f(stretch, max(dot(lifted, normal), 0.0), 0.0),
     );
 }

@@ -32,7 +32,7 @@ struct Surface {
     @location(0) place_mm: vec3f,
     @location(1) normal: vec3f,
     @location(2) tangent: vec4f,
-    @location(3) uv: vec2f,
+    @location(3) map_uv: vec2f,
     /// Whether light enters the body here, or leaves it.
     @location(4) @interpolate(flat) enters: u32,
 }
@@ -56,7 +56,7 @@ fn see_grown(@builtin(vertex_index) index: u32) -> Surface {
         vertex.position_mm,
         vertex.normal,
         vertex.tangent,
-        vec2f(vertex.u, vertex.v),
+        vec2f(vertex.map_u, vertex.map_v),
         select(0u, 1u, enters(triangle)),
     );
 }
@@ -99,13 +99,13 @@ fn signed_mm(surface: Surface) -> f32 {
 }
 
 fn entered(surface: Surface) -> vec3f {
-    let uv = surface.uv;
+    let map_uv = surface.map_uv;
     let smooth_normal = unit_or(surface.normal, vec3f(0.0, 1.0, 0.0));
-    let stored = textureSampleLevel(relief_map, repeating, uv, 0.0).xyz;
+    let stored = textureSampleLevel(relief_map, repeating, map_uv, 0.0).xyz;
     let normal = with_relief(material, stored, smooth_normal, surface.tangent);
-    let rho_s = scalar_at(material.rho_s, textureSampleLevel(rho_s_map, repeating, uv, 0.0));
-    let roughness = scalar_at(material.roughness, textureSampleLevel(roughness_map, repeating, uv, 0.0));
-    let albedo = material.albedo_factor * textureSampleLevel(albedo_map, repeating, uv, 0.0).rgb;
+    let rho_s = scalar_at(material.rho_s, textureSampleLevel(rho_s_map, repeating, map_uv, 0.0));
+    let roughness = scalar_at(material.roughness, textureSampleLevel(roughness_map, repeating, map_uv, 0.0));
+    let albedo = material.albedo_factor * textureSampleLevel(albedo_map, repeating, map_uv, 0.0).rgb;
     let cos = max(dot(normal, dir_to_light(drawn.light, surface.place_mm)), 0.0);
     return film(albedo, material.albedo_mix) * (cos * rho_dt(rho_dt_table, linear, cos, roughness, rho_s));
 }

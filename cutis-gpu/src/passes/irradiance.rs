@@ -81,6 +81,7 @@ impl IrradiancePass {
             (16, Bound::Sampler(&samplers.linear)),
             (17, Bound::Sampler(&samplers.repeating)),
             (18, Bound::Sampler(&samplers.around_sky)),
+            (19, Bound::Texture(atlas.coordinates.view())),
             (SLIDES, Bound::Buffer(inputs.slides)),
         ];
         over_charts(gpu, &self.pipeline, inputs.charts, &bound, &[target], false)

@@ -19,6 +19,8 @@
 @group(0) @binding(16) var linear: sampler;
 @group(0) @binding(17) var repeating: sampler;
 @group(0) @binding(18) var around_sky: sampler;
+/// Of every texel, in the material's maps and in those of light.
+@group(0) @binding(19) var coordinates: texture_2d<u32>;
 
 @fragment
 fn light_texel(@builtin(position) position: vec4f) -> @location(0) vec4f {
@@ -28,12 +30,12 @@ fn light_texel(@builtin(position) position: vec4f) -> @location(0) vec4f {
         return vec4f(0.0);
     }
     let place = textureLoad(places, texel, 0);
-    let relief = textureLoad(reliefs, texel, 0);
     let point_mm = bitcast<vec3f>(place.xyz);
-    let normal = unpack_unit(relief.x);
-    let uv = unpack2x16unorm(relief.y);
-    let rho_s = scalar_at(material.rho_s, textureSampleLevel(rho_s_map, repeating, uv, 0.0));
-    let roughness = scalar_at(material.roughness, textureSampleLevel(roughness_map, repeating, uv, 0.0));
+    let normal = unpack_unit(textureLoad(reliefs, texel, 0).x);
+    let own = textureLoad(coordinates, texel, 0);
+    let map_uv = unpack2x16unorm(own.x);
+    let rho_s = scalar_at(material.rho_s, textureSampleLevel(rho_s_map, repeating, map_uv, 0.0));
+    let roughness = scalar_at(material.roughness, textureSampleLevel(roughness_map, repeating, map_uv, 0.0));
     var light_in = vec3f(0.0);
     var l = 0u;
     loop {
@@ -49,9 +51,9 @@ fn light_texel(@builtin(position) position: vec4f) -> @location(0) vec4f {
         }
     }
     let smooth_normal = unpack_unit(place.w);
-    light_in += from_environment(uv, chart, smooth_normal, normal)
+    light_in += from_environment(unpack2x16unorm(own.y), chart, smooth_normal, normal)
         * mean_rho_dt(rho_dt_table, linear, roughness, rho_s);
-    let albedo = material.albedo_factor * textureSampleLevel(albedo_map, repeating, uv, 0.0).rgb;
+    let albedo = material.albedo_factor * textureSampleLevel(albedo_map, repeating, map_uv, 0.0).rgb;
     let distance_mm = textureLoad(distances_mm, texel, 0, 0).x;
     return vec4f(light_in * film(albedo, material.albedo_mix), distance_mm);
 }

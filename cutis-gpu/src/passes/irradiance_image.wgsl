@@ -21,7 +21,8 @@ fn see_from_light(@builtin(vertex_index) index: u32) -> Seen {
     let vertex = vertices[triangle[index % 3u]];
     let map = map_of(drawn.light);
     let position = on_map(map, in_map_axes(map, vertex.position_mm));
-    return Seen(position, vertex.position_mm, vertex.normal, vertex.tangent, vec2f(vertex.u, vertex.v), triangle.w);
+    return Seen(position, vertex.position_mm, vertex.normal, vertex.tangent, vec2f(vertex.map_u, vertex.map_v),
+        vertex.atlas_uv, triangle.w);
 }
 
 @fragment
@@ -30,7 +31,7 @@ fn light_image(seen: Seen) -> Image {
     let across = cross(dpdx(seen.position_mm), dpdy(seen.position_mm));
     let flat_normal = unit_or(across * select(-1.0, 1.0, dot(across, smooth_normal) > 0.0), smooth_normal);
     let normal = select(flat_normal, smooth_normal, drawn.smooth_plane != 0u);
-    let share = clamp(scalar_at(material.share, textureSampleLevel(share_map, repeating, seen.uv, 0.0)), 0.0, 1.0);
+    let share = clamp(scalar_at(material.share, textureSampleLevel(share_map, repeating, seen.map_uv, 0.0)), 0.0, 1.0);
     // Its place in the row of mixtures, which lie closer at both ends.
     let mixture = asin(sqrt(share)) / HALF_PI;
     let place = vec4u(bitcast<vec3u>(seen.position_mm), pack_unit_and_share(normal, mixture));
@@ -39,14 +40,14 @@ fn light_image(seen: Seen) -> Image {
 
 /// Irradiance under the surface, W/m².
 fn irradiance_at(seen: Seen, smooth_normal: vec3f) -> vec3f {
-    let uv = seen.uv;
-    let stored = textureSampleLevel(relief_map, repeating, uv, 0.0).xyz;
+    let map_uv = seen.map_uv;
+    let stored = textureSampleLevel(relief_map, repeating, map_uv, 0.0).xyz;
     let normal = with_relief(material, stored, smooth_normal, seen.tangent);
-    let rho_s = scalar_at(material.rho_s, textureSampleLevel(rho_s_map, repeating, uv, 0.0));
-    let roughness = scalar_at(material.roughness, textureSampleLevel(roughness_map, repeating, uv, 0.0));
-    let texels = around(uv, textureDimensions(charts));
+    let rho_s = scalar_at(material.rho_s, textureSampleLevel(rho_s_map, repeating, map_uv, 0.0));
+    let roughness = scalar_at(material.roughness, textureSampleLevel(roughness_map, repeating, map_uv, 0.0));
+    let texels = around(seen.atlas_uv, textureDimensions(charts));
     let weights = chart_weights(charts, texels, seen.chart);
-    var sum = from_environment(uv, seen.chart, smooth_normal, normal)
+    var sum = from_environment(seen.atlas_uv, seen.chart, smooth_normal, normal)
         * mean_rho_dt(rho_dt_table, linear, roughness, rho_s);
     var l = 0u;
     loop {
@@ -59,6 +60,6 @@ fn irradiance_at(seen: Seen, smooth_normal: vec3f) -> vec3f {
             break if l >= arrayLength(&lights);
         }
     }
-    let albedo = material.albedo_factor * textureSampleLevel(albedo_map, repeating, uv, 0.0).rgb;
+    let albedo = material.albedo_factor * textureSampleLevel(albedo_map, repeating, map_uv, 0.0).rgb;
     return sum * film(albedo, material.albedo_mix);
 }

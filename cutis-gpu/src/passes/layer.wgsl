@@ -30,7 +30,7 @@ const WAYS: u32 = 12u;
 fn show(seen: Seen) -> @location(0) vec4f {
     let place = place_at(seen);
     let parts = parts_at(place);
-    let texels = around(place.uv, textureDimensions(level));
+    let texels = around(place.atlas_uv, textureDimensions(level));
     let weights = chart_weights(level_charts, texels, place.chart);
     let value = blend_layer(level, 0u, texels, weights);
     switch wanted.layer {
@@ -46,7 +46,7 @@ fn show(seen: Seen) -> @location(0) vec4f {
         case EXITANCE: { return vec4f(parts.exitance, 1.0); }
         case CHARTS: { return vec4f(f32(place.chart)); }
         case SAMPLES: { return vec4f(vec2f(f32(wanted.samples)), 0.0, 0.0); }
-        case TEXEL: { return vec4f(textureLoad(level, vec2i(place.uv * vec2f(textureDimensions(level))), 0, 0).xy, 0.0, 1.0); }
+        case TEXEL: { return vec4f(textureLoad(level, vec2i(place.atlas_uv * vec2f(textureDimensions(level))), 0, 0).xy, 0.0, 1.0); }
         default: { return vec4f(0.0); }
     }
 }

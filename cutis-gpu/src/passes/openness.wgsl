@@ -71,7 +71,7 @@ fn seen_from_afar(map: LightMap, point_mm: vec3f, normal: vec3f) -> f32 {
     let growth = -facing.xy / facing.z;
     let size = vec2f(textureDimensions(depths));
     let texel_mm = 2.0 * map.half_width / size.x;
-    let uv = map_uv(map, axes_mm);
+    let uv = light_map_uv(map, axes_mm);
     let texels = around(uv, vec2u(size));
     let nearest_mm = axes_mm.z - texel_mm * (1e-3 + BENT * (abs(growth.x) + abs(growth.y)));
     let own = uv * size - 0.5;

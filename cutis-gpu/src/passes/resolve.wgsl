@@ -30,7 +30,8 @@ struct Place {
     smooth_normal: vec3f,
     normal: vec3f,
     dir_to_eye: vec3f,
-    uv: vec2f,
+    /// In the maps of light.
+    atlas_uv: vec2f,
     chart: u32,
     albedo: vec3f,
     rho_s: f32,
@@ -63,9 +64,9 @@ fn shade(seen: Seen) -> @location(0) vec4f {
 }
 
 fn place_at(seen: Seen) -> Place {
-    let uv = seen.uv;
+    let map_uv = seen.map_uv;
     let smooth_normal = unit_or(seen.normal, vec3f(0.0, 1.0, 0.0));
-    let stored = textureSampleLevel(relief_map, repeating, uv, 0.0).xyz;
+    let stored = textureSampleLevel(relief_map, repeating, map_uv, 0.0).xyz;
     let dir_to_eye = normalize(camera.position_mm - seen.position_mm);
     let relief = with_relief(material, stored, smooth_normal, seen.tangent);
     return Place(
@@ -73,11 +74,11 @@ fn place_at(seen: Seen) -> Place {
         smooth_normal,
         towards_eye(relief, dir_to_eye),
         dir_to_eye,
-        uv,
+        seen.atlas_uv,
         seen.chart,
-        material.albedo_factor * textureSampleLevel(albedo_map, repeating, uv, 0.0).rgb,
-        scalar_at(material.rho_s, textureSampleLevel(rho_s_map, repeating, uv, 0.0)),
-        scalar_at(material.roughness, textureSampleLevel(roughness_map, repeating, uv, 0.0)),
+        material.albedo_factor * textureSampleLevel(albedo_map, repeating, map_uv, 0.0).rgb,
+        scalar_at(material.rho_s, textureSampleLevel(rho_s_map, repeating, map_uv, 0.0)),
+        scalar_at(material.roughness, textureSampleLevel(roughness_map, repeating, map_uv, 0.0)),
         vec2u(seen.position.xy),
     );
 }
@@ -88,7 +89,7 @@ fn shine_of(place: Place) -> Shine {
 
 /// The sums of the paper's final pass.
 fn parts_at(place: Place) -> Parts {
-    let texels = around(place.uv, textureDimensions(charts));
+    let texels = around(place.atlas_uv, textureDimensions(charts));
     let weights = chart_weights(charts, texels, place.chart);
     let leaves = exitance_at(place, texels, weights);
     // On the way out: the film once more, rho_dt towards the eye, and the even spread of exitance over directions.
@@ -128,7 +129,7 @@ fn visible_part(l: u32, texels: Around, weights: vec4f) -> f32 {
 
 /// Radiance reflected from the environment, of which some may be hidden, W/(m² sr).
 fn from_surroundings(place: Place, shine: Shine) -> vec3f {
-    let texels = around(place.uv, textureDimensions(ambient));
+    let texels = around(place.atlas_uv, textureDimensions(ambient));
     let weights = chart_weights(ambient_charts, texels, place.chart);
     let covered = any(weights > vec4f(0.0));
     let value = select(vec4f(place.smooth_normal, 1.0), blend(ambient, texels, weights), covered);

@@ -150,7 +150,7 @@ fn colours(gpu: &Gpu, inputs: &SevenTapsInputs, layers: Range<usize>) -> Map {
     }
     let size = inputs.atlas.size;
     let colour = |i: usize| {
-        let uv = inputs.atlas.uv_under(inputs.object, i);
+        let uv = inputs.atlas.map_uv_under(inputs.object, i);
         uv.map_or(Vec3::ONE, |uv| layers.iter().map(|layer| layer.at(uv)).product()).extend(1.0)
     };
     Map::of_values(gpu, "layers under the surface", [size as u32; 2], (0..size * size).map(colour))

@@ -59,6 +59,7 @@ impl SharesPass {
             (9, Bound::Texture(inputs.material.roughness.view())),
             (10, Bound::Sampler(&inputs.samplers.linear)),
             (11, Bound::Sampler(&inputs.samplers.repeating)),
+            (12, Bound::Texture(inputs.atlas.coordinates.view())),
             (SLIDES, Bound::Buffer(inputs.slides)),
         ];
         over_charts(gpu, &self.pipeline, inputs.charts, &bound, &[target], false)

@@ -12,6 +12,8 @@
 @group(0) @binding(9) var roughness_map: texture_2d<f32>;
 @group(0) @binding(10) var linear: sampler;
 @group(0) @binding(11) var repeating: sampler;
+/// Of every texel, in the material's maps and in those of light.
+@group(0) @binding(12) var coordinates: texture_2d<u32>;
 
 struct Group {
     first_light: u32,
@@ -24,11 +26,10 @@ struct Group {
 fn share_lights(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let texel = vec2i(position.xy);
     let point_mm = bitcast<vec3f>(textureLoad(places, texel, 0).xyz);
-    let relief = textureLoad(reliefs, texel, 0);
-    let normal = unpack_unit(relief.x);
-    let uv = unpack2x16unorm(relief.y);
-    let rho_s = scalar_at(material.rho_s, textureSampleLevel(rho_s_map, repeating, uv, 0.0));
-    let roughness = scalar_at(material.roughness, textureSampleLevel(roughness_map, repeating, uv, 0.0));
+    let normal = unpack_unit(textureLoad(reliefs, texel, 0).x);
+    let map_uv = unpack2x16unorm(textureLoad(coordinates, texel, 0).x);
+    let rho_s = scalar_at(material.rho_s, textureSampleLevel(rho_s_map, repeating, map_uv, 0.0));
+    let roughness = scalar_at(material.roughness, textureSampleLevel(roughness_map, repeating, map_uv, 0.0));
     var whole = 0.0;
     var shares = vec4f(0.0);
     for (var l = 0u; l < arrayLength(&lights); l++) {

@@ -28,8 +28,8 @@ fn stretch_at_vertices(@builtin(global_invocation_id) id: vec3u) {
         let c = vertices[corners.z];
         let e1 = b.position_mm - a.position_mm;
         let e2 = c.position_mm - a.position_mm;
-        let d1 = vec2f(b.u - a.u, b.v - a.v);
-        let d2 = vec2f(c.u - a.u, c.v - a.v);
+        let d1 = b.atlas_uv - a.atlas_uv;
+        let d2 = c.atlas_uv - a.atlas_uv;
         let determinant = perp_dot(d1, d2);
         if determinant == 0.0 {
             continue;

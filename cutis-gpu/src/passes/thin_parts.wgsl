@@ -51,7 +51,7 @@ fn come_through(@builtin(position) position: vec4f) -> @location(0) vec4f {
 
 /// What of a light entered where it does, W/m².
 fn entered(l: u32, there: LightFacing) -> vec3f {
-    let texels = around(there.uv, textureDimensions(light));
+    let texels = around(there.atlas_uv, textureDimensions(light));
     let weights = chart_weights(charts, texels, there.chart);
     let all = blend(light, texels, weights).rgb;
     if body.many_lights == 0u {

@@ -44,7 +44,7 @@ const MARKED: f32 = 1e-8;
 struct Under {
     chart: u32,
     texel: vec2i,
-    uv: vec2f,
+    atlas_uv: vec2f,
 }
 
 fn under(texel: vec2i) -> Under {
@@ -124,7 +124,7 @@ fn transmit(@builtin(position) position: vec4f) -> @location(0) vec4f {
         let dir_to_light = dir_to_light(l, point_mm);
         let there = light_facing_surface(map_of(l), depths, surfaces, point_mm, slabs.object);
         let comes_through = there.found && !there.itself && dot(normal, dir_to_light) < 0.0;
-        let apart_mm = max(apart_mm(here.uv, normal, here.chart, there) - uncertain_mm(there, dir_to_light), 0.0);
+        let apart_mm = max(apart_mm(here.atlas_uv, normal, here.chart, there) - uncertain_mm(there, dir_to_light), 0.0);
         sum += select(vec3f(0.0), through_all(l, here, there, apart_mm) * share(l, there), comes_through);
         continuing {
             l++;
@@ -140,10 +140,10 @@ fn through_all(l: u32, here: Under, there: LightFacing, apart_mm: f32) -> vec3f 
     var i = 0u;
     for (var s = 0u; s < slabs.size_count; s++) {
         let size = slabs.sizes[s];
-        let finer = on_levels(charts, size.finer_halvings, here.uv, here.chart);
-        let own = on_levels(charts, size.halvings, here.uv, here.chart);
-        let lit = on_levels(charts, size.halvings, there.uv, there.chart);
-        let instead = instead_of_level(levels, charts, size, there.uv, there.chart).rgb;
+        let finer = on_levels(charts, size.finer_halvings, here.atlas_uv, here.chart);
+        let own = on_levels(charts, size.halvings, here.atlas_uv, here.chart);
+        let lit = on_levels(charts, size.halvings, there.atlas_uv, there.chart);
+        let instead = instead_of_level(levels, charts, size, there.atlas_uv, there.chart).rgb;
         for (; i < size.end; i++) {
             let slab = slabs.all[i];
             var before = own;
@@ -181,18 +181,18 @@ fn share(l: u32, there: LightFacing) -> f32 {
     if slabs.many_lights == 0u {
         return 1.0;
     }
-    let texels = around(there.uv, textureDimensions(shares));
+    let texels = around(there.atlas_uv, textureDimensions(shares));
     return blend_layer(shares, l / 4u, texels, chart_weights(charts, texels, there.chart))[l % 4u];
 }
 
 /// Distance along the surface to the light-facing place, mm. Within a chart the texture tells. Between charts no blur has
 /// brought its light here if it lies on the other side of a thin part; around an edge it is a neighbour beyond the seam.
-fn apart_mm(uv: vec2f, normal: vec3f, chart: u32, there: LightFacing) -> f32 {
+fn apart_mm(atlas_uv: vec2f, normal: vec3f, chart: u32, there: LightFacing) -> f32 {
     let size = vec2f(textureDimensions(places));
-    let texel_there = vec2i(there.uv * size);
+    let texel_there = vec2i(there.atlas_uv * size);
     if chart == there.chart {
-        let stretch = textureLoad(stretch_map, vec2i(uv * size), 0).xy + textureLoad(stretch_map, texel_there, 0).xy;
-        return length((uv - there.uv) * size * 0.5 * stretch);
+        let stretch = textureLoad(stretch_map, vec2i(atlas_uv * size), 0).xy + textureLoad(stretch_map, texel_there, 0).xy;
+        return length((atlas_uv - there.atlas_uv) * size * 0.5 * stretch);
     }
     let normal_there = unpack_unit(textureLoad(places, texel_there, 0).w);
     let opposite = clamp(-dot(normal_there, normal), 0.0, 1.0);
@@ -202,7 +202,7 @@ fn apart_mm(uv: vec2f, normal: vec3f, chart: u32, there: LightFacing) -> f32 {
 
 /// How far along the light-facing surface the place may be off: what the map cannot tell apart is not apart, mm.
 fn uncertain_mm(there: LightFacing, dir_to_light: vec3f) -> f32 {
-    let texel = vec2i(there.uv * vec2f(textureDimensions(places)));
+    let texel = vec2i(there.atlas_uv * vec2f(textureDimensions(places)));
     let cos = dot(unpack_unit(textureLoad(places, texel, 0).w), dir_to_light);
     // Seen at less than 3 degrees a surface has no place on the map.
     return there.uncertain_mm / max(cos, 0.05);

@@ -117,7 +117,7 @@ fn distance_mm(map: LightMap, point_mm: vec3f, normal: vec3f, dir_to_light: vec3
     if !there.found {
         return group_of.opaque_mm;
     }
-    let texel = vec2i(there.uv * vec2f(textureDimensions(places)));
+    let texel = vec2i(there.atlas_uv * vec2f(textureDimensions(places)));
     let normal_there = unpack_unit(textureLoad(places, texel, 0).w);
     let d_mm = corrected_mm(there.distance_mm, normal, normal_there, dir_to_light);
     return min(scaled_mm(d_mm, group_of.thickness_scale), group_of.opaque_mm);
@@ -127,7 +127,7 @@ fn distance_mm(map: LightMap, point_mm: vec3f, normal: vec3f, dir_to_light: vec3
 struct Own {
     point_mm: vec3f,
     normal: vec3f,
-    uv: vec2f,
+    atlas_uv: vec2f,
     mm_per_uv: vec2f,
     chart: u32,
 }
@@ -244,7 +244,7 @@ fn receiver(map: LightMap, own: Own) -> Receiver {
     let texel_mm = 2.0 * map_half_width_mm(map, depth_mm) / f32(textureDimensions(depths).x);
     // Half a texel outwards: the surface may be curved, and the map holds flat triangles.
     let axes_mm = in_map_axes(map, own.point_mm + own.normal * (0.5 * texel_mm));
-    let uv = map_uv(map, axes_mm);
+    let uv = light_map_uv(map, axes_mm);
     let slope = min(length(n.xy) / max(abs(n.z), 1e-3), MAX_SLOPE);
     let covered = nearest_mm(map, uv) < depth_mm - texel_mm && is_other(map, uv, own, 2.0 * texel_mm * (1.0 + slope));
     let bent_mm = select(BENT * texel_mm * slope, 0.0, covered);
@@ -256,7 +256,7 @@ fn receiver(map: LightMap, own: Own) -> Receiver {
 /// of one object nothing is known.
 fn is_other(map: LightMap, uv: vec2f, own: Own, itself_mm: f32) -> bool {
     let shown = textureLoad(surfaces, texel_at(uv), map.layer, 0).xy;
-    let along_mm = length((unpack2x16unorm(shown.x) - own.uv) * own.mm_per_uv);
+    let along_mm = length((unpack2x16unorm(shown.x) - own.atlas_uv) * own.mm_per_uv);
     let same_chart = (shown.y & 65535u) == own.chart;
     return (shown.y >> 16u) != group_of.object || (same_chart && along_mm > itself_mm);
 }

@@ -5,6 +5,8 @@ use crate::map::{Map, Pyramid, View};
 use crate::passes::TILE_TEXELS;
 use cutis_render::passes::atlas::{Atlas, ChartMap, NO_CHART};
 use cutis_render::passes::seven_taps::FARTHEST_TEXELS;
+use cutis_scene::Object;
+use glam::Vec2;
 
 /// Texels of a chart that are counted to either side at most: two of these numbers share 16 bits.
 const MAX_REACH: u16 = FARTHEST_TEXELS;
@@ -114,12 +116,29 @@ fn single_tiles(runs: &[u32]) -> Vec<u32> {
 
 /// The triangle under every texel of the atlas, as `passes/atlas.wgsl` reads it.
 pub fn surface_texture(gpu: &Gpu, atlas: &Atlas) -> Map {
-    let size = atlas.size as u32;
-    let sixteen_bits = |x: f32| (x.clamp(0.0, 1.0) * 65535.0).round() as u32;
-    let words =
-        atlas.surface.iter().flat_map(|s| [s.triangle, sixteen_bits(s.b1) | sixteen_bits(s.b2) << 16]);
-    let bytes: Vec<u8> = words.flat_map(u32::to_le_bytes).collect();
-    Map::filled(gpu, "surface", [size, size], wgpu::TextureFormat::Rg32Uint, &bytes)
+    let words = atlas.surface.iter().map(|s| [s.triangle, packed(Vec2::new(s.b1, s.b2))]);
+    pairs(gpu, "surface", atlas.size, &words.collect::<Vec<_>>())
+}
+
+/// Where every texel of the atlas lies in the material's maps, which repeat, and in the maps of light.
+pub fn coordinates_texture(gpu: &Gpu, object: &Object, atlas: &Atlas) -> Map {
+    let words = (0..atlas.surface.len()).map(|i| {
+        let uvs =
+            [atlas.map_uv_under(object, i), atlas.atlas_uv_under(object, i)].map(Option::unwrap_or_default);
+        [packed(uvs[0] - uvs[0].floor()), packed(uvs[1])]
+    });
+    pairs(gpu, "coordinates", atlas.size, &words.collect::<Vec<_>>())
+}
+
+/// Two numbers from 0 to 1 in 16 bits each, as `unpack2x16unorm` reads them.
+fn packed(pair: Vec2) -> u32 {
+    let [x, y] = (pair.clamp(Vec2::ZERO, Vec2::ONE) * 65535.0).round().as_uvec2().to_array();
+    x | y << 16
+}
+
+fn pairs(gpu: &Gpu, label: &str, size: usize, words: &[[u32; 2]]) -> Map {
+    let size = size as u32;
+    Map::filled(gpu, label, [size, size], wgpu::TextureFormat::Rg32Uint, bytemuck::cast_slice(words))
 }
 
 #[cfg(test)]

@@ -12,14 +12,20 @@ use glam::Vec2;
 pub struct Vertex {
     /// Position, mm.
     pub position_mm: [f32; 3],
-    /// First texture coordinate.
-    pub u: f32,
+    /// First coordinate in the material's maps.
+    pub map_u: f32,
     /// Unit normal.
     pub normal: [f32; 3],
-    /// Second texture coordinate.
-    pub v: f32,
+    /// Second coordinate in the material's maps.
+    pub map_v: f32,
     /// Unit tangent, handedness in w.
     pub tangent: [f32; 4],
+    /// Place in the maps of light.
+    pub atlas_uv: [f32; 2],
+    /// Fills up the struct.
+    pub pad0: u32,
+    /// Fills up the struct.
+    pub pad1: u32,
 }
 
 /// The mesh of one object.
@@ -67,13 +73,15 @@ impl Geometry {
 }
 
 pub(super) fn vertex(mesh: &Mesh, v: usize) -> Vertex {
-    let uv = mesh.uvs[v];
+    let map_uv = mesh.uvs[v];
     Vertex {
         position_mm: mesh.positions_mm[v].to_array(),
-        u: uv.x,
+        map_u: map_uv.x,
         normal: mesh.normals[v].to_array(),
-        v: uv.y,
+        map_v: map_uv.y,
         tangent: mesh.tangents[v].to_array(),
+        atlas_uv: mesh.in_atlas()[v].to_array(),
+        ..Vertex::zeroed()
     }
 }
 

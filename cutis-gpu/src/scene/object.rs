@@ -131,7 +131,7 @@ impl ObjectMaps {
         let geometry = Geometry::new(gpu, object)?;
         let inside = Inside::new(gpu, object, kernel.total(), settings)?;
         let material = MaterialMaps::new(gpu, &object.material)?;
-        let atlas = AtlasMaps::new(gpu, size);
+        let atlas = AtlasMaps::new(gpu, object, &unrolled);
         let surface = surface_texture(gpu, &unrolled);
         let mut steps = ObjectSteps::default();
         steps.surface.push(passes.stretch.step(gpu, &geometry));

@@ -29,7 +29,7 @@ pub use kernel::{chosen_kernel, opaque_mm};
 use object_pass::ObjectPass;
 use std::ops::Deref;
 use std::sync::Arc;
-pub use warnings::{left_out, warnings};
+pub use warnings::{laid_out_anew, left_out, warnings};
 
 /// Smallest irradiance texture of an object that is much smaller than the largest.
 const MIN_ATLAS: u32 = 64;
@@ -73,7 +73,7 @@ pub fn render(scene: &Scene, settings: &Settings, progress: &dyn Progress) -> Re
         frame.diffusion_reports = lit.reports();
     }
     frame.passes = lit.take_passes();
-    frame.warnings = warnings(scene, settings.technique, settings.diffusion);
+    frame.warnings = warnings(scene, settings);
     Ok(frame)
 }
 

@@ -2,13 +2,13 @@
 
 use crate::prepare::kernel::stacks;
 use crate::prepare::mixtures::media_of;
-use crate::settings::{Diffusion, TechniqueName};
+use crate::settings::{AovSpace, Diffusion, Settings, TechniqueName};
 use cutis_optics::{Dipole, Medium, Stack};
 use cutis_scene::{Object, Scattering, Scene};
 use std::collections::BTreeMap;
 
 /// All of it, in words.
-pub fn warnings(scene: &Scene, technique: TechniqueName, diffusion: Diffusion) -> Vec<String> {
+pub fn warnings(scene: &Scene, settings: &Settings) -> Vec<String> {
     let open = scene.objects.iter().filter(|object| !object.closed).map(|object| {
         let name = &object.name;
         format!("'{name}' is not a closed surface: light that enters may find no way out, and thin parts stay dark")
@@ -17,7 +17,8 @@ pub fn warnings(scene: &Scene, technique: TechniqueName, diffusion: Diffusion) -
         let second = object.material.mixed_with.as_ref().map(|second| &second.scattering);
         std::iter::once(&object.material.scattering).chain(second).flat_map(beyond_the_model)
     });
-    open.chain(invalid).chain(left_out(scene, technique, diffusion)).collect()
+    let left_out = left_out(scene, settings.technique, settings.diffusion);
+    open.chain(invalid).chain(left_out).chain(laid_out_anew(scene, settings)).collect()
 }
 
 /// What diffusion is not good for.
@@ -55,6 +56,19 @@ pub fn left_out(
     scene.objects.iter().flat_map(of).flatten()
 }
 
+/// Says so where layers in texture space are not laid out as a mesh's file says.
+pub fn laid_out_anew(scene: &Scene, settings: &Settings) -> impl Iterator<Item = String> {
+    let asked = settings.aov_space == AovSpace::Texture && !settings.aovs.is_empty();
+    let anew = scene.objects.iter().filter(move |object| asked && object.mesh.atlas_uvs.is_some());
+    anew.map(|object| {
+        format!(
+            "layers in texture space of '{}' are laid out by the atlas that was made for its light, not by the texture \
+             coordinates of its file",
+            object.name
+        )
+    })
+}
+
 fn layers_left_out(object: &Object, technique: TechniqueName) -> Option<String> {
     let (name, layers) = (&object.name, object.material.under.len());
     let are = if layers == 1 { "layer lies" } else { "layers lie" };
@@ -90,7 +104,9 @@ fn paths_left_out(object: &Object, technique: TechniqueName, diffusion: Diffusio
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::settings::Aov;
     use cutis_scene::head::HeadDetail;
+    use cutis_scene::validation::maps::repeated_and_written_out;
     use cutis_scene::{ScalarMap, studio};
 
     /// What only heat flow knows is told by everybody else, and by nobody where it is as it always was.
@@ -98,7 +114,7 @@ mod tests {
     fn a_scaled_mean_free_path_is_told_where_it_is_not_drawn() {
         let mut scene = studio::head_in_the_studio(HeadDetail { triangles: 1000, map_size: 0 });
         let told = |scene: &Scene, technique, diffusion| {
-            warnings(scene, technique, diffusion)
+            warnings(scene, &Settings { technique, diffusion, ..Settings::default() })
                 .iter()
                 .any(|warning| warning.contains("the mean free path of"))
         };
@@ -112,5 +128,18 @@ mod tests {
         scene.objects[0].material.mean_free_path_scale = ScalarMap::constant(2.0);
         assert!(others.iter().all(|&(technique, diffusion)| told(&scene, technique, diffusion)));
         assert!(!told(&scene, flows.0, flows.1));
+    }
+
+    /// Who exports maps of light learns that the file's texture coordinates do not fit them.
+    #[test]
+    fn maps_by_an_atlas_that_was_made_are_told() {
+        let [anew, as_it_was] = repeated_and_written_out();
+        let settings = Settings { aovs: vec![Aov::Irradiance], ..Settings::default() };
+        let in_texture = Settings { aov_space: AovSpace::Texture, ..settings.clone() };
+        let told = |scene: &Scene, settings: &Settings| {
+            warnings(scene, settings).iter().any(|warning| warning.contains("laid out by the atlas"))
+        };
+        assert!(told(&anew, &in_texture));
+        assert!(!told(&anew, &settings) && !told(&as_it_was, &in_texture));
     }
 }

@@ -18,7 +18,7 @@ pub const NO_CHART: u32 = u32::MAX;
 const PADDING: usize = 2;
 
 /// A chart of fewer texels hardly holds light.
-const LEAST_CHART_TEXELS: f32 = 4.0;
+const LEAST_CHART_TEXELS: f32 = 1.0;
 
 /// Rows of texels that one task rasterises.
 const BAND_ROWS: usize = 32;
@@ -76,6 +76,7 @@ impl Atlas {
         for _ in 0..PADDING {
             pad(object, size, &mut surface);
         }
+        claim_for_thin_parts(object, size, &mut surface);
         let chart = surface.par_iter().map(|s| chart_of(object, s)).collect();
         Self { size, surface, charts: Arc::new(ChartMap::new(size, chart)) }
     }
@@ -86,11 +87,16 @@ impl Atlas {
         (s.triangle != NO_CHART).then(|| object.surface_point(s.triangle, s.b1, s.b2))
     }
 
-    /// Texture coordinates of that surface.
-    pub fn uv_under(&self, object: &Object, texel: usize) -> Option<Vec2> {
+    /// Place of that surface in the material's maps.
+    pub fn map_uv_under(&self, object: &Object, texel: usize) -> Option<Vec2> {
         let s = self.surface[texel];
-        let between = |[a, b, c]: [Vec2; 3]| a + (b - a) * s.b1 + (c - a) * s.b2;
-        (s.triangle != NO_CHART).then(|| between(object.mesh.corner_uvs(s.triangle as usize)))
+        (s.triangle != NO_CHART).then(|| object.map_uv_at(s.triangle, s.b1, s.b2))
+    }
+
+    /// Place of that surface in the maps of light: the texel's middle, but where it pads a chart.
+    pub fn atlas_uv_under(&self, object: &Object, texel: usize) -> Option<Vec2> {
+        let s = self.surface[texel];
+        (s.triangle != NO_CHART).then(|| object.atlas_uv_at(s.triangle, s.b1, s.b2))
     }
 
     /// The surface under a texel of a smaller map that belongs to `chart`: `times` as wide as one of these. Of the texels
@@ -178,7 +184,7 @@ pub fn charts_that_hold_light(object: &Object, size: usize) -> Vec<bool> {
     let of_triangle = &object.charts.of_triangle;
     let mut texels = vec![0.0f32; of_triangle.iter().max().map_or(0, |&last| last as usize + 1)];
     for (triangle, &chart) in of_triangle.iter().enumerate() {
-        let [a, b, c] = object.mesh.corner_uvs(triangle).map(|uv| uv * size as f32);
+        let [a, b, c] = object.mesh.corner_atlas_uvs(triangle).map(|uv| uv * size as f32);
         texels[chart as usize] += 0.5 * (b - a).perp_dot(c - a).abs();
     }
     texels.into_iter().map(|texels| texels >= LEAST_CHART_TEXELS).collect()
@@ -192,7 +198,7 @@ fn chart_of(object: &Object, surface: &TexelSurface) -> u32 {
 fn triangles_by_band(object: &Object, size: usize) -> Vec<Vec<u32>> {
     let mut buckets = vec![Vec::new(); size.div_ceil(BAND_ROWS)];
     for t in 0..object.mesh.triangles.len() {
-        let rows = object.mesh.corner_uvs(t).map(|uv| uv.y * size as f32);
+        let rows = object.mesh.corner_atlas_uvs(t).map(|uv| uv.y * size as f32);
         let lo = rows[0].min(rows[1]).min(rows[2]).max(0.0);
         let hi = rows[0].max(rows[1]).max(rows[2]).min(size as f32 - 1.0);
         if lo <= hi {
@@ -207,7 +213,7 @@ fn triangles_by_band(object: &Object, size: usize) -> Vec<Vec<u32>> {
 
 /// Claims the free texels whose centres a triangle covers. `rows` are the texels from row `first_row` on.
 fn rasterise(object: &Object, triangle: u32, size: usize, first_row: usize, rows: &mut [TexelSurface]) {
-    let [a, b, c] = object.mesh.corner_uvs(triangle as usize).map(|uv| uv * size as f32 - 0.5);
+    let [a, b, c] = object.mesh.corner_atlas_uvs(triangle as usize).map(|uv| uv * size as f32 - 0.5);
     let area = (b - a).perp_dot(c - a);
     if area == 0.0 || !area.is_finite() {
         return;
@@ -218,8 +224,7 @@ fn rasterise(object: &Object, triangle: u32, size: usize, first_row: usize, rows
     for y in clamp(lo.y.ceil(), size).max(first_row)..=clamp(hi.y.floor(), size - 1).min(last_row) {
         for x in clamp(lo.x.ceil(), size)..=clamp(hi.x.floor(), size - 1) {
             let p = Vec2::new(x as f32, y as f32);
-            let b1 = (c - p).perp_dot(a - p) / area;
-            let b2 = (a - p).perp_dot(b - p) / area;
+            let [b1, b2] = barycentric([a, b, c], p);
             let texel = &mut rows[(y - first_row) * size + x];
             // Both sides of a shared edge may claim its texels (the slack is rounding): the first triangle has them.
             if b1 >= -1e-6 && b2 >= -1e-6 && b1 + b2 <= 1.0 + 1e-6 && texel.triangle == NO_CHART {
@@ -231,6 +236,33 @@ fn rasterise(object: &Object, triangle: u32, size: usize, first_row: usize, rows
             }
         }
     }
+}
+
+/// Parts of charts so thin that they cover no texel's centre far and wide take the texels that their edges run through, where
+/// those are free: else they would have no light.
+fn claim_for_thin_parts(object: &Object, size: usize, surface: &mut [TexelSurface]) {
+    for triangle in 0..object.mesh.triangles.len() as u32 {
+        let corners = object.mesh.corner_atlas_uvs(triangle as usize);
+        for edge in 0..3 {
+            let (from, to) = (corners[edge] * size as f32, corners[(edge + 1) % 3] * size as f32);
+            // No edge on a map is longer than twice its side.
+            let steps = from.distance(to).min(2.0 * size as f32).ceil().max(1.0) as usize;
+            for place in (0..steps).map(|i| from.lerp(to, i as f32 / steps as f32)) {
+                let is_on_map = place.min_element() >= 0.0 && place.max_element() < size as f32;
+                let texel = place.y as usize * size + place.x as usize;
+                if is_on_map && surface[texel].triangle == NO_CHART {
+                    let (b1, b2, _) = nearest_on_triangle(corners, (place.floor() + 0.5) / size as f32);
+                    surface[texel] = TexelSurface { triangle, b1, b2 };
+                }
+            }
+        }
+    }
+}
+
+/// Weights of the second and the third corner of a triangle at a point of its plane; not numbers if it has no area.
+pub fn barycentric([a, b, c]: [Vec2; 3], p: Vec2) -> [f32; 2] {
+    let area = (b - a).perp_dot(c - a);
+    [(c - p).perp_dot(a - p) / area, (a - p).perp_dot(b - p) / area]
 }
 
 /// Adds one ring of texels around every chart. A new texel takes the triangle of a neighbour and the point of that
@@ -262,7 +294,7 @@ fn nearest_neighbour(object: &Object, size: usize, surface: &[TexelSurface], tex
         if neighbour.triangle == NO_CHART {
             continue;
         }
-        let uvs = object.mesh.corner_uvs(neighbour.triangle as usize);
+        let uvs = object.mesh.corner_atlas_uvs(neighbour.triangle as usize);
         let (b1, b2, distance2) = nearest_on_triangle(uvs, centre);
         if distance2 < best.0 {
             best = (distance2, TexelSurface { triangle: neighbour.triangle, b1, b2 });
@@ -337,4 +369,33 @@ fn most_common(charts: [u32; 4]) -> u32 {
     let count = |c: u32| charts.iter().filter(|&&other| other == c).count();
     let covered = charts.into_iter().filter(|&c| c != NO_CHART);
     covered.max_by_key(|&c| (count(c), std::cmp::Reverse(c))).unwrap_or(NO_CHART)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cutis_scene::{Material, Mesh};
+    use glam::Vec3;
+
+    /// A needle between the centres of texels has light from end to end, and a point of it on the surface everywhere.
+    #[test]
+    fn a_chart_that_covers_no_centre_has_texels_all_along() {
+        let size = 64;
+        let uvs = [[10.0, 20.7], [40.0, 20.9], [40.0, 20.95]].map(|uv| Vec2::from_array(uv) / size as f32);
+        let mesh = Mesh {
+            positions_mm: vec![Vec3::ZERO, Vec3::new(30.0, 0.0, 0.0), Vec3::new(30.0, 0.1, 0.0)],
+            uvs: uvs.to_vec(),
+            triangles: vec![[0, 1, 2]],
+            ..Mesh::default()
+        };
+        let object = Object::new("needle", mesh, Material::default());
+        let atlas = Atlas::new(&object, size);
+        let along = vec![1.0f32; size * size];
+        for x in 10..40 {
+            let at = (Vec2::new(x as f32 + 0.5, 20.8)) / size as f32;
+            assert_eq!(atlas.charts.sample(&along, at, 0), Some(1.0), "{x}");
+            let point = atlas.surface_point(&object, 20 * size + x).expect("the needle runs through it");
+            assert!((point.position_mm.x - (x as f32 - 9.5)).abs() < 1.0, "{x}: {}", point.position_mm);
+        }
+    }
 }

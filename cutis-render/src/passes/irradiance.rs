@@ -102,7 +102,7 @@ fn light_texel(inputs: &IrradianceInputs, x: usize, y: usize, row: &mut Row) {
     let Some(point) = inputs.atlas.surface_point(inputs.object, texel) else { return };
     let material = &inputs.object.material;
     let normal = shading_normal(inputs.object, &point);
-    let (rho_s, roughness) = (material.rho_s.at(point.uv), material.roughness.at(point.uv));
+    let (rho_s, roughness) = (material.rho_s.at(point.map_uv), material.roughness.at(point.map_uv));
     let chart = inputs.atlas.charts.chart[texel];
     let mut from_lights = Vec3::ZERO;
     for (l, light) in inputs.rays.scene.lights.iter().enumerate() {
@@ -116,7 +116,7 @@ fn light_texel(inputs: &IrradianceInputs, x: usize, y: usize, row: &mut Row) {
         row.tried[x] += tried;
         let (layer, component) = distance_slot(l);
         if !faces(&point, light) {
-            let near = inputs.half_size.distance_mm(l, point.uv, chart);
+            let near = inputs.half_size.distance_mm(l, point.atlas_uv, chart);
             row.layers[layer][x][component] = near.unwrap_or_else(|| inputs.rays.distance_mm(light, &point));
         }
         if let Some(share) = row.shares.get_mut(l) {
@@ -127,7 +127,7 @@ fn light_texel(inputs: &IrradianceInputs, x: usize, y: usize, row: &mut Row) {
     row.shares.iter_mut().for_each(|share| share[x] /= whole);
     let from_environment = from_environment(inputs.environment, inputs.ambient, &point, normal, chart)
         * inputs.rho_dt.mean(roughness, rho_s);
-    let film = material.film_inwards(point.uv);
+    let film = material.film_inwards(point.map_uv);
     row.layers[0][x] = ((from_lights + from_environment) * film).extend(row.layers[0][x].w);
 }
 
@@ -152,7 +152,7 @@ fn visibility(
     if !faces(point, light) {
         return Seen { visible: 0.0, tried: 0 };
     }
-    if let Some(visible) = half_size.visible(l, point.uv, chart, light.has_extent()) {
+    if let Some(visible) = half_size.visible(l, point.atlas_uv, chart, light.has_extent()) {
         return Seen { visible, tried: 0 };
     }
     let shift = random2(x as u32, y as u32, STREAM + l as u32, rays.settings.seed);
@@ -169,7 +169,7 @@ pub fn from_environment(
     chart: u32,
 ) -> Vec3 {
     let Some(environment) = environment else { return Vec3::ZERO };
-    let (bent, open) = ambient.at(point.uv, chart, point.normal, normal);
+    let (bent, open) = ambient.at(point.atlas_uv, chart, point.normal, normal);
     environment.irradiance(bent) * open
 }
 
@@ -179,22 +179,22 @@ pub fn irradiance_at(lit: Lit, object: usize, point: &SurfacePoint, chart: u32) 
     let (maps, object) = (&lit.maps[object], &lit.scene.objects[object]);
     let material = &object.material;
     let normal = shading_normal(object, point);
-    let (rho_s, roughness) = (material.rho_s.at(point.uv), material.roughness.at(point.uv));
+    let (rho_s, roughness) = (material.rho_s.at(point.map_uv), material.roughness.at(point.map_uv));
     let around = from_environment(lit.environment, &maps.ambient, point, normal, chart);
     let mut sum = around * maps.rho_dt.mean(roughness, rho_s);
     for (light, visibility) in lit.scene.lights.iter().zip(&maps.visibility) {
         let towards = light.sample(point.position_mm);
         let cos = normal.dot(towards.dir_to_light).max(0.0);
-        let visible = maps.atlas.charts.sample(visibility, point.uv, chart).unwrap_or(0.0);
+        let visible = maps.atlas.charts.sample(visibility, point.atlas_uv, chart).unwrap_or(0.0);
         sum += towards.irradiance_w_per_m2 * (cos * visible * maps.rho_dt.at(cos, roughness, rho_s));
     }
-    sum * material.film_inwards(point.uv)
+    sum * material.film_inwards(point.map_uv)
 }
 
 /// The normal with the material's relief.
 pub fn shading_normal(object: &Object, point: &SurfacePoint) -> Vec3 {
     match &object.material.normal {
-        Some(map) => map.at(point.uv, point.normal, point.tangent),
+        Some(map) => map.at(point.map_uv, point.normal, point.tangent),
         None => point.normal,
     }
 }

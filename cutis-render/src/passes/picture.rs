@@ -149,16 +149,21 @@ impl<'a> Lens<'a> {
         let first = seen.first()?.1?;
         let (object, maps) = self.resolve.object_of(&first);
         let chart = object.charts.of_triangle[first.triangle as usize];
-        let reach = SHARED_TEXELS / object.material.largest_map().max(maps.atlas.size as u32) as f32;
-        let (mut lo, mut hi) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
+        let texels = [object.material.largest_map() as f32, maps.atlas.size as f32];
+        let mut boxes = [[Vec2::INFINITY, Vec2::NEG_INFINITY]; 2];
         for (_, hit) in seen {
             // Another object may have fewer triangles than the number of this one.
             let hit = (*hit).filter(|hit| hit.object == first.object)?;
-            let uv = object.uv_at(hit.triangle, hit.b1, hit.b2);
-            (lo, hi) = (lo.min(uv), hi.max(uv));
-            let same = object.charts.of_triangle[hit.triangle as usize] == chart;
-            if !same || (hi - lo).max_element() > reach {
+            let Hit { triangle, b1, b2, .. } = hit;
+            if object.charts.of_triangle[triangle as usize] != chart {
                 return None;
+            }
+            let uvs = [object.map_uv_at(triangle, b1, b2), object.atlas_uv_at(triangle, b1, b2)];
+            for (([lo, hi], uv), texels) in boxes.iter_mut().zip(uvs).zip(texels) {
+                (*lo, *hi) = (lo.min(uv), hi.max(uv));
+                if (*hi - *lo).max_element() * texels > SHARED_TEXELS {
+                    return None;
+                }
             }
         }
         let points = seen.iter().filter_map(|(_, hit)| hit.as_ref()).map(|hit| self.resolve.point(hit));

@@ -78,19 +78,23 @@ pub struct PixelPart {
 impl Place<'_> {
     /// The surface's shine here.
     pub fn shine(&self) -> Shine {
-        let (material, uv) = (&self.object.material, self.point.uv);
+        let (material, map_uv) = (&self.object.material, self.point.map_uv);
         Shine {
             normal: self.normal,
             dir_to_eye: self.dir_to_eye,
-            rho_s: material.rho_s.at(uv),
-            roughness: material.roughness.at(uv),
+            rho_s: material.rho_s.at(map_uv),
+            roughness: material.roughness.at(map_uv),
             f0: material.f0,
         }
     }
 
     /// Fraction of light number `l` that is seen from here.
     pub fn visible(&self, l: usize) -> f32 {
-        self.maps.atlas.charts.sample(&self.maps.visibility[l], self.point.uv, self.chart).unwrap_or(0.0)
+        self.maps
+            .atlas
+            .charts
+            .sample(&self.maps.visibility[l], self.point.atlas_uv, self.chart)
+            .unwrap_or(0.0)
     }
 }
 
@@ -146,7 +150,7 @@ impl Resolve<'_> {
         let shine = place.shine();
         let Exitance { local, transmitted } = self.inside.exitance(place);
         // On the way out: the film once more, rho_dt towards the eye, and the even spread of exitance over directions.
-        let film = place.object.material.film_outwards(place.point.uv);
+        let film = place.object.material.film_outwards(place.point.map_uv);
         let cos_eye = place.normal.dot(place.dir_to_eye);
         let leaving = film * (place.maps.rho_dt.at(cos_eye, shine.roughness, shine.rho_s) / PI);
         Parts {
@@ -161,7 +165,7 @@ impl Resolve<'_> {
         let Place { maps, point, chart, .. } = place;
         let mut sum = self.inside.shine(place).unwrap_or_else(|| self.shine_of_lights(place, shine));
         if let Some(environment) = self.lit.environment {
-            let open = maps.ambient.at(point.uv, *chart, point.normal, shine.normal);
+            let open = maps.ambient.at(point.atlas_uv, *chart, point.normal, shine.normal);
             sum += shine.from_environment(environment, &maps.rho_dt, open);
         }
         sum
@@ -176,7 +180,7 @@ impl Resolve<'_> {
     }
 
     fn layer(&self, aov: Aov, place: &Place, parts: &Parts) -> Vec4 {
-        let (maps, uv) = (place.maps, place.point.uv);
+        let (maps, uv) = (place.maps, place.point.atlas_uv);
         let read = |level: usize| {
             let level = level.min(maps.diffused.levels.len() - 1);
             maps.diffused.sample(level, 0, uv, place.chart).truncate().extend(1.0)
@@ -187,7 +191,7 @@ impl Resolve<'_> {
             Aov::Stretch => maps.stretch_at(uv).extend(0.0).extend(1.0),
             Aov::Thickness => self.inside.distances_mm(place).unwrap_or_else(|| self.distances(place)),
             Aov::Normal => place.normal.extend(1.0),
-            Aov::Albedo => place.object.material.albedo.at(uv).extend(1.0),
+            Aov::Albedo => place.object.material.albedo.at(place.point.map_uv).extend(1.0),
             Aov::Specular => parts.specular.extend(1.0),
             Aov::Transmission => parts.transmission.extend(1.0),
             Aov::Diffuse => (parts.diffuse + parts.transmission).extend(1.0),
@@ -209,7 +213,7 @@ impl Resolve<'_> {
         let mut distances = Vec4::ZERO;
         for l in 0..self.lit.scene.lights.len().min(4) {
             let (layer, component) = distance_slot(l);
-            distances[l] = place.maps.diffused.sample(0, layer, place.point.uv, place.chart)[component];
+            distances[l] = place.maps.diffused.sample(0, layer, place.point.atlas_uv, place.chart)[component];
         }
         distances
     }

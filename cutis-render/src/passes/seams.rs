@@ -55,7 +55,7 @@ fn energy(object: &Object, light: impl Fn(Vec2, u32) -> Vec3) -> f64 {
     const SPLITS: usize = 6;
     let mesh = &object.mesh;
     let per_triangle = |t: usize| {
-        let [a, b, c] = mesh.corner_uvs(t);
+        let [a, b, c] = mesh.corner_atlas_uvs(t);
         let chart = object.charts.of_triangle[t];
         let mut sum = 0.0f64;
         // Centres of the small triangles of a regular subdivision, upright and turned.

@@ -145,7 +145,7 @@ impl<'a> SevenTaps<'a> {
     fn filter(&self, light: &mut [Vec4], layers: Range<usize>) {
         for layer in &self.object.material.under[layers] {
             light.par_iter_mut().enumerate().for_each(|(i, texel)| {
-                let colour = self.atlas.uv_under(self.object, i).map_or(Vec3::ONE, |uv| layer.at(uv));
+                let colour = self.atlas.map_uv_under(self.object, i).map_or(Vec3::ONE, |uv| layer.at(uv));
                 *texel *= colour.extend(1.0);
             });
         }

@@ -37,7 +37,7 @@ fn squared_lengths_at_vertices_mm2(object: &Object) -> Vec<Vec2> {
     for (t, vertices) in mesh.triangles.iter().enumerate() {
         let Some([along_u, along_v]) = derivatives_mm(object, t) else { continue };
         let squares = Vec2::new(along_u.length_squared(), along_v.length_squared());
-        let [a, b, c] = mesh.corner_uvs(t);
+        let [a, b, c] = mesh.corner_atlas_uvs(t);
         let area = mesh.area_mm2(t) * (b - a).perp_dot(c - a).abs();
         let share = area * squares.recip();
         if !share.is_finite() {
@@ -55,7 +55,7 @@ fn squared_lengths_at_vertices_mm2(object: &Object) -> Vec<Vec2> {
 /// dX/du and dX/dv of a triangle, mm per unit of the texture. `None` if it has no area in the texture.
 pub fn derivatives_mm(object: &Object, triangle: usize) -> Option<[Vec3; 2]> {
     let [p0, p1, p2] = object.mesh.corners_mm(triangle);
-    let [t0, t1, t2] = object.mesh.corner_uvs(triangle);
+    let [t0, t1, t2] = object.mesh.corner_atlas_uvs(triangle);
     let (e1, e2, d1, d2) = (p1 - p0, p2 - p0, t1 - t0, t2 - t0);
     let determinant = d1.perp_dot(d2);
     (determinant != 0.0)

@@ -49,7 +49,7 @@ fn from_all_lights(bodies: &Bodies, object: usize, deviation_mm: Vec3, point: &S
             return Vec3::ZERO;
         };
         let lit = &bodies.maps[there.object].diffused;
-        let entered = lit.sample(0, 0, there.uv, there.chart).truncate() * bodies.share(l, &there);
+        let entered = lit.sample(0, 0, there.atlas_uv, there.chart).truncate() * bodies.share(l, &there);
         entered * left_after(scaled_mm(there.distance_mm, scale), deviation_mm)
     };
     bodies.scene.lights.iter().enumerate().map(from_light).sum()

@@ -96,7 +96,9 @@ impl Bodies<'_> {
             if faces(point, light) {
                 continue;
             }
-            let Some(slab) = slab_weights(&maps.kernel, &maps.diffused, l, point.uv, chart) else { continue };
+            let Some(slab) = slab_weights(&maps.kernel, &maps.diffused, l, point.atlas_uv, chart) else {
+                continue;
+            };
             let Some(there) = light_facing_surface(self.scene, self.bvh, point, light) else { continue };
             let share = self.share(l, &there);
             if share > 0.0 {
@@ -112,7 +114,7 @@ impl Bodies<'_> {
     pub fn share(&self, l: usize, there: &LightFacing) -> f32 {
         let maps = &self.maps[there.object];
         match maps.shares.get(l) {
-            Some(shares) => maps.atlas.charts.sample(shares, there.uv, there.chart).unwrap_or(0.0),
+            Some(shares) => maps.atlas.charts.sample(shares, there.atlas_uv, there.chart).unwrap_or(0.0),
             None => 1.0,
         }
     }
@@ -122,7 +124,7 @@ impl Bodies<'_> {
     /// an edge (like normals) it is a neighbour beyond the seam, as far away as it looks.
     fn apart_mm(&self, maps: &ObjectMaps, point: &SurfacePoint, chart: u32, there: &LightFacing) -> f32 {
         if std::ptr::eq(maps, &self.maps[there.object]) && chart == there.chart {
-            return maps.along_surface_mm(point.uv, there.uv);
+            return maps.along_surface_mm(point.atlas_uv, there.atlas_uv);
         }
         let opposite = (-there.normal.dot(point.normal)).clamp(0.0, 1.0);
         // 1e-6 keeps the quotient finite; a micrometre over it is a metre.
@@ -162,7 +164,7 @@ fn transmitted(kernel: &Kernel, slab: &[f32], apart_mm: f32, maps: &Diffused, th
     for (i, (&variance_mm2, &weight)) in kernel.variances_mm2.iter().zip(&kernel.weights).enumerate() {
         let through = slab[i] * fade_out(apart_mm, variance_mm2);
         if through > VISIBLE {
-            sum += weight * through * maps.sample(i + 1, 0, there.uv, there.chart).truncate();
+            sum += weight * through * maps.sample(i + 1, 0, there.atlas_uv, there.chart).truncate();
         }
     }
     sum

@@ -19,8 +19,8 @@ pub struct LightFacing {
     pub object: usize,
     /// Its chart.
     pub chart: u32,
-    /// Its texture coordinates.
-    pub uv: Vec2,
+    /// Its place in the maps of light.
+    pub atlas_uv: Vec2,
     /// Its unit normal.
     pub normal: Vec3,
     /// Distance m through the body, towards the light, mm.
@@ -78,7 +78,7 @@ pub fn light_facing_surface(
     Some(LightFacing {
         object: hit.object as usize,
         chart: object.charts.of_triangle[hit.triangle as usize],
-        uv: there.uv,
+        atlas_uv: there.atlas_uv,
         normal: there.normal,
         distance_mm: hit.distance_mm,
         corrected_mm: hit.distance_mm * (1.0 + (cos - 1.0) * opposite),

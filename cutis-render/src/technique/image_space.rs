@@ -148,7 +148,7 @@ impl Kernels {
     /// The profile of a place.
     fn at(&self, place: &Place, settings: &ImageSpaceSettings) -> &RadialKernel {
         let all = if place.is_whole_pixel { &self.whole } else { &self.shared };
-        let share = place.object.material.share_at(place.point.uv);
+        let share = place.object.material.share_at(place.point.map_uv);
         &all[mixture_at(share, all.len() as u32, place.sample, settings)]
     }
 }

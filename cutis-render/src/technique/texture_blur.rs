@@ -98,7 +98,7 @@ pub struct Blurred;
 impl Inside for Blurred {
     fn exitance(&self, place: &Place) -> Exitance {
         let maps = place.maps;
-        let local = maps.diffused.weighted_sum(&maps.kernel.weights, place.point.uv, place.chart);
+        let local = maps.diffused.weighted_sum(&maps.kernel.weights, place.point.atlas_uv, place.chart);
         Exitance { local, transmitted: Vec3::ZERO }
     }
 }

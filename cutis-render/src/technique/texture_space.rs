@@ -23,7 +23,7 @@ impl<'a> Spread<'a> {
 impl Inside for Spread<'_> {
     fn exitance(&self, place: &Place) -> Exitance {
         let Place { maps, chart, .. } = *place;
-        let uv = place.point.uv;
+        let uv = place.point.atlas_uv;
         let through = self.transmission.get(place.object_number);
         Exitance {
             local: maps.diffused.weighted_sum(&maps.kernel.weights, uv, chart),

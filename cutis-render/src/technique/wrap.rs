@@ -280,10 +280,10 @@ impl Inside for Wrapped<'_> {
         let material = &place.object.material;
         let from_lights =
             self.over_lights(place, |irradiance, light, rho_dt| irradiance * light.truncate() * rho_dt);
-        let (rho_s, roughness) = (material.rho_s.at(point.uv), material.roughness.at(point.uv));
+        let (rho_s, roughness) = (material.rho_s.at(point.map_uv), material.roughness.at(point.map_uv));
         let around = from_environment(self.lit.environment, &maps.ambient, &point, place.normal, place.chart);
         let light = from_lights + around * maps.rho_dt.mean(roughness, rho_s);
-        let local = light * material.film_inwards(point.uv) * maps.kernel.total();
+        let local = light * material.film_inwards(point.map_uv) * maps.kernel.total();
         Exitance { local, transmitted: Vec3::ZERO }
     }
 

@@ -74,12 +74,12 @@ impl Body {
             flat_normal: meeting.flat_normal,
             interface: Interface {
                 eta: self.tissue.refractive_index,
-                roughness: f64::from(material.roughness.at(point.uv)),
+                roughness: f64::from(material.roughness.at(point.map_uv)),
             },
-            film_inwards: material.film_inwards(point.uv).as_dvec3() * per_colour(material.albedo_mix),
-            film_outwards: material.film_outwards(point.uv).as_dvec3()
+            film_inwards: material.film_inwards(point.map_uv).as_dvec3() * per_colour(material.albedo_mix),
+            film_outwards: material.film_outwards(point.map_uv).as_dvec3()
                 * per_colour(1.0 - material.albedo_mix),
-            rho_s: f64::from(material.rho_s.at(point.uv)),
+            rho_s: f64::from(material.rho_s.at(point.map_uv)),
         }
     }
 }

@@ -28,8 +28,8 @@ pub struct Exit {
     pub object: u32,
     /// Index of the triangle.
     pub triangle: u32,
-    /// Texture coordinates of the place.
-    pub uv: Vec2,
+    /// The place in the maps of light.
+    pub atlas_uv: Vec2,
     /// Flux, in W/m² times mm².
     pub flux: DVec3,
 }
@@ -185,7 +185,7 @@ impl Packet<'_, '_> {
                 self.exits.push(Exit {
                     object: meeting.object,
                     triangle: meeting.triangle,
-                    uv: surface.point.uv,
+                    atlas_uv: surface.point.atlas_uv,
                     flux,
                 });
                 return true;

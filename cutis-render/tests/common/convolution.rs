@@ -104,7 +104,7 @@ impl Direct {
 /// Ends of every edge at which charts meet, mm.
 pub fn seams_mm(object: &Object) -> Vec<[Vec3; 2]> {
     let end = |triangle: u32, uv: Vec2| {
-        let corners = object.mesh.corner_uvs(triangle as usize);
+        let corners = object.mesh.corner_atlas_uvs(triangle as usize);
         let k = (0..3).min_by(|&i, &j| (corners[i] - uv).length().total_cmp(&(corners[j] - uv).length()));
         object.mesh.corners_mm(triangle as usize)[k.expect("a triangle has three corners")]
     };
@@ -173,7 +173,7 @@ impl Spread {
 
     /// At a place, after a Gaussian.
     pub fn at(&self, object: &Object, level: usize, place: &Place) -> f32 {
-        let [a, b, c] = object.mesh.corner_uvs(place.triangle);
+        let [a, b, c] = object.mesh.corner_atlas_uvs(place.triangle);
         let uv = a + (b - a) * place.b.x + (c - a) * place.b.y;
         self.diffused.sample(level, 0, uv, object.charts.of_triangle[place.triangle]).x
     }

@@ -161,7 +161,7 @@ pub fn flown_in_pose(
     let diffused = flow.diffuse(Arc::clone(&atlas.charts), fields, &variances_mm2, &Silent);
     let weights = [[0.6, 0.2], [0.2, 0.2], [0.2, 0.6], [1.0 / 3.0, 1.0 / 3.0]];
     let read = |triangle: usize, [b1, b2]: [f32; 2]| {
-        let [a, b, c] = object.mesh.corner_uvs(triangle);
+        let [a, b, c] = object.mesh.corner_atlas_uvs(triangle);
         let uv = a + (b - a) * b1 + (c - a) * b2;
         let after = diffused.sample(2, 0, uv, object.charts.of_triangle[triangle]).x;
         let place_mm = object.surface_point(triangle as u32, b1, b2).position_mm;

@@ -84,7 +84,7 @@ fn texture_coordinates_are_injective() {
         assert!(Charts::overlap_fraction(mesh, 2048) < 1e-3);
         let area = |[a, b, c]: [Vec2; 3]| (b - a).perp_dot(c - a);
         // The image is seen from outside and upright: v grows downwards, so all areas are negative.
-        assert!((0..mesh.triangles.len()).all(|t| area(mesh.corner_uvs(t)) < 0.0));
+        assert!((0..mesh.triangles.len()).all(|t| area(mesh.corner_map_uvs(t)) < 0.0));
     }
 }
 
@@ -94,7 +94,7 @@ fn texels_on_the_face_are_even_and_fine() {
     let front = |&t: &usize| mesh.corners_mm(t).iter().all(|p| p.z > 30.0 && p.y.abs() < 110.0);
     let (mut inside, mut all) = (0.0, 0.0);
     for t in (0..mesh.triangles.len()).filter(front) {
-        let [a, b, c] = mesh.corner_uvs(t).map(|uv| uv * 2048.0);
+        let [a, b, c] = mesh.corner_map_uvs(t).map(|uv| uv * 2048.0);
         let texel_mm = (mesh.area_mm2(t) / (0.5 * (b - a).perp_dot(c - a).abs())).sqrt();
         all += mesh.area_mm2(t);
         inside += if (0.2..0.36).contains(&texel_mm) { mesh.area_mm2(t) } else { 0.0 };
@@ -133,7 +133,7 @@ fn maps_are_skin() {
     let head = built_in(HeadDetail { triangles: 10_000, map_size: 256 });
     let material = &head.material;
     for (t, _) in head.mesh.triangles.iter().enumerate().step_by(97) {
-        let uv = head.mesh.corner_uvs(t).iter().sum::<Vec2>() / 3.0;
+        let uv = head.mesh.corner_map_uvs(t).iter().sum::<Vec2>() / 3.0;
         let point = head.surface_point(t as u32, 1.0 / 3.0, 1.0 / 3.0);
         let albedo = material.albedo.at(uv);
         assert!(albedo.min_element() > 0.01 && albedo.max_element() < 0.95, "{albedo}");

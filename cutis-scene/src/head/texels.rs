@@ -22,7 +22,7 @@ impl TexelMap {
     pub fn new(object: &Object, size: u32) -> Self {
         let mut map = Self { size, owner: vec![NOBODY; (size * size) as usize] };
         for t in 0..object.mesh.triangles.len() {
-            map.claim(t as u32, object.mesh.corner_uvs(t).map(|uv| uv * size as f32 - 0.5));
+            map.claim(t as u32, object.mesh.corner_map_uvs(t).map(|uv| uv * size as f32 - 0.5));
         }
         for _ in 0..MARGIN {
             map.grow();
@@ -70,7 +70,7 @@ impl TexelMap {
         if t == NOBODY {
             return None;
         }
-        let [a, b, c] = object.mesh.corner_uvs(t as usize);
+        let [a, b, c] = object.mesh.corner_map_uvs(t as usize);
         let p = Vec2::new((texel as u32 % self.size) as f32 + 0.5, (texel as u32 / self.size) as f32 + 0.5)
             / self.size as f32;
         let area = (b - a).perp_dot(c - a);

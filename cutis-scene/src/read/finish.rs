@@ -1,19 +1,16 @@
 //! From the parts a file gave to a whole scene: checks, overrides, camera and, where there is none, light.
 
-use super::checks::{MAX_COUNT, check_mesh, troubles_of_charts, wrap_charts};
+use super::atlas::{LACKS_UVS, give_atlas};
+use super::checks::{MAX_COUNT, check_mesh};
 use super::file::resolve_for_user;
 use super::image::ColourSpace;
 use super::scene_file::PoseKeys;
 use super::textures::Textures;
-use super::{CameraChoice, Parts, Piece, ReadOptions};
+use super::{AtlasChoice, CameraChoice, Parts, Piece, ReadOptions};
 use crate::error::one_line;
 use crate::scene::bounds_mm;
 use crate::studio::{STUDIO_BACKGROUND, studio_environment, studio_lights};
-use crate::topology::weld;
-use crate::unwrap::unwrap;
-use crate::{
-    Camera, Charts, ColourMap, NormalMap, NormalSpace, Object, ObjectSource, ScalarMap, Scene, SceneError,
-};
+use crate::{Camera, ColourMap, NormalMap, NormalSpace, Object, ObjectSource, ScalarMap, Scene, SceneError};
 use glam::Vec3;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -39,7 +36,7 @@ pub(super) fn finish(mut parts: Parts, file: &Path, options: &ReadOptions) -> Re
     let mut objects = Vec::with_capacity(count);
     for (number, piece) in parts.pieces.into_iter().enumerate() {
         let own_material = piece.own_material.clone();
-        let mut object = to_object(piece, file, options, &mut warnings)?;
+        let mut object = to_object(piece, file, (options, parts.atlas), &mut warnings)?;
         object.source = origin.clone().map(|origin| ObjectSource { origin, number, count, own_material });
         objects.push(object);
     }
@@ -64,43 +61,20 @@ pub(super) fn finish(mut parts: Parts, file: &Path, options: &ReadOptions) -> Re
 fn to_object(
     piece: Piece,
     file: &Path,
-    options: &ReadOptions,
+    (options, atlas): (&ReadOptions, AtlasChoice),
     warnings: &mut Vec<String>,
 ) -> Result<Object, SceneError> {
     let Piece { name, place, mut mesh, lacks_uvs, material, .. } = piece;
     let fail = |reason: String| SceneError::new(file, place.as_str(), reason);
     check_mesh(&mut mesh, file, &place, warnings)?;
-    let troubles = if lacks_uvs {
-        vec!["the mesh has no texture coordinates".to_owned()]
-    } else {
-        wrap_charts(&mut mesh, &place, warnings);
-        troubles_of_charts(&mesh)
-    };
     if lacks_uvs && material.has_maps() {
         let what_to_do = "unwrap it in a modelling program, or leave the maps out and an atlas is made";
-        return Err(fail(format!("{}, which its maps need: {what_to_do}", troubles[0])));
+        return Err(fail(format!("{LACKS_UVS}, which its maps need: {what_to_do}")));
     }
-    match troubles.first() {
-        // Maps lie where the texture coordinates say; without any the mesh may have others.
-        Some(trouble) if !material.has_maps() => {
-            match unwrap(&mut mesh, options.cache_folder.as_deref(), options.tell) {
-                Ok(()) => {
-                    let charts = Charts::find(&mesh, &weld(&mesh.positions_mm)).count;
-                    warnings.push(format!("{place}: {trouble}; an atlas of {charts} charts was made"));
-                }
-                Err(why) if lacks_uvs => {
-                    return Err(fail(format!("{trouble}, and no atlas could be made: {why}")));
-                }
-                Err(why) => warnings.push(format!(
-                    "{place}: {trouble}, and no atlas could be made ({why}); diffusion in texture space will mix those places"
-                )),
-            }
-        }
-        _ => {
-            let mixed =
-                |trouble| format!("{place}: {trouble}; diffusion in texture space will mix those places");
-            warnings.extend(troubles.into_iter().map(mixed));
-        }
+    match give_atlas(&mut mesh, lacks_uvs, atlas, options) {
+        Ok(Some(words)) => warnings.push(format!("{place}: {words}")),
+        Ok(None) => {}
+        Err(why) => return Err(fail(why)),
     }
     Ok(Object::new(name, mesh, material))
 }

@@ -3,6 +3,7 @@
 //! Every size a file claims is checked before memory is asked for, every index before it is used, and every error is
 //! one line that names the file, the place in it and the reason. Guesses end up in [`Scene::warnings`].
 
+mod atlas;
 mod checks;
 mod file;
 mod finish;
@@ -35,10 +36,35 @@ pub struct ReadOptions {
     pub specular: Option<PathBuf>,
     /// Folder that `assets:` stands for; goes before the environment variable `CUTIS_ASSETS`.
     pub assets_folder: Option<PathBuf>,
+    /// Where light lies; goes before what a scene file says.
+    pub atlas: Option<AtlasChoice>,
     /// Folder where atlases that were made are kept; left out: they are made anew every time.
     pub cache_folder: Option<PathBuf>,
     /// Who is told how far work that takes long is, in words.
     pub tell: Option<fn(&str)>,
+}
+
+/// Where light lies, which needs every place of a surface once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum AtlasChoice {
+    /// Where the mesh's texture coordinates say, if they can carry it; else in an atlas that is made.
+    #[default]
+    Own,
+    /// In an atlas that is made, with texels of one size: where the mesh's own are slivers, light spreads too slowly.
+    New,
+}
+
+impl AtlasChoice {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Own, Self::New];
+
+    /// The name in scene files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Own => "own",
+            Self::New => "new",
+        }
+    }
 }
 
 /// Before the place of an image in the material that the mesh itself brings.
@@ -63,6 +89,8 @@ struct Parts {
     pieces: Vec<Piece>,
     /// Where all pieces came from.
     origin: Option<MeshOrigin>,
+    /// Where their light lies.
+    atlas: AtlasChoice,
     lights: Vec<Light>,
     environment: Option<Environment>,
     /// Whether a scene without light is meant to have none.
@@ -115,8 +143,10 @@ fn read_mesh_file(path: &Path, options: &ReadOptions) -> Result<Parts, SceneErro
             return Err(SceneError::new(path, "file name", reason));
         }
     };
-    let ReadOptions { millimetres_per_unit, flip_v, .. } = *options;
-    parts.origin = Some(MeshOrigin::File { path: path.to_owned(), millimetres_per_unit, flip_v });
+    let ReadOptions { millimetres_per_unit, flip_v, atlas, .. } = *options;
+    parts.atlas = atlas.unwrap_or_default();
+    let atlas = parts.atlas;
+    parts.origin = Some(MeshOrigin::File { path: path.to_owned(), millimetres_per_unit, flip_v, atlas });
     Ok(parts)
 }
 

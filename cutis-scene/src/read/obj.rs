@@ -72,8 +72,8 @@ struct Group {
     name: String,
     mesh: Mesh,
     vertex_of_corner: HashMap<Corner, u32>,
-    /// Whether a corner has no texture coordinate.
-    lacks_uvs: bool,
+    /// Whether a corner has a texture coordinate; those that have none lie at the corner of the texture.
+    has_uvs: bool,
 }
 
 struct Parser<'a> {
@@ -239,8 +239,8 @@ impl<'a> Parser<'a> {
     }
 
     fn vertex(&mut self, corner: Corner) -> u32 {
-        let Group { mesh, vertex_of_corner, lacks_uvs, .. } = &mut self.groups[self.current];
-        *lacks_uvs |= corner.1.is_none();
+        let Group { mesh, vertex_of_corner, has_uvs, .. } = &mut self.groups[self.current];
+        *has_uvs |= corner.1.is_some();
         *vertex_of_corner.entry(corner).or_insert_with(|| {
             let (position, uv, normal) = corner;
             mesh.positions_mm.push(self.positions[position as usize]);
@@ -267,7 +267,7 @@ impl<'a> Parser<'a> {
         let complete = self.corners_without_normal == 0;
         let used = self.groups.into_iter().filter(|group| !group.mesh.triangles.is_empty());
         Ok(used
-            .map(|Group { name, mut mesh, lacks_uvs, .. }| {
+            .map(|Group { name, mut mesh, has_uvs, .. }| {
                 if !complete {
                     mesh.normals.clear();
                 }
@@ -276,7 +276,7 @@ impl<'a> Parser<'a> {
                     place: format!("object `{name}`"),
                     name,
                     mesh,
-                    lacks_uvs,
+                    lacks_uvs: !has_uvs,
                     material: Material::default(),
                     own_material: Material::default(),
                 }

@@ -5,6 +5,7 @@
 
 mod bodies;
 mod heads;
+pub mod maps;
 pub mod shapes;
 
 use crate::read::asset;

@@ -11,7 +11,7 @@ mod text;
 mod whole;
 
 use crate::source::{MeshOrigin, ObjectSource};
-use crate::{Camera, Pose, Scene, SceneError, Wave};
+use crate::{AtlasChoice, Camera, Pose, Scene, SceneError, Wave};
 use files::Files;
 use glam::Vec3;
 use std::path::{Path, PathBuf};
@@ -118,13 +118,16 @@ fn mesh(origin: &MeshOrigin, files: &mut Files) -> Result<String, SceneError> {
             put("triangles", detail.triangles.to_string());
             put("map_size", detail.map_size.to_string());
         }
-        MeshOrigin::File { path, millimetres_per_unit, flip_v } => {
+        MeshOrigin::File { path, millimetres_per_unit, flip_v, atlas } => {
             put("path", quoted(&files.name(path)?));
             if let Some(mm) = millimetres_per_unit {
                 put("millimetres_per_unit", number(*mm));
             }
             if *flip_v {
                 put("flip_v", "true".to_owned());
+            }
+            if *atlas != AtlasChoice::default() {
+                put("atlas", quoted(atlas.name()));
             }
         }
     }

@@ -32,7 +32,7 @@ const FADE_COS: f32 = 0.2;
 const NO_WAY_MM: f32 = 1e6;
 
 fn exitance_at(place: Place, texels: Around, weights: vec4f) -> Exitance {
-    let around = from_environment(place.uv, place.chart, place.smooth_normal, place.normal);
+    let around = from_environment(place.atlas_uv, place.chart, place.smooth_normal, place.normal);
     let film_in = film(place.albedo, material.albedo_mix);
     var sum = Exitance(around * mean_rho_dt(rho_dt_table, linear, place.roughness, place.rho_s) * film_in, vec3f(0.0));
     var l = 0u;
@@ -104,7 +104,7 @@ struct Ways {
 /// With the ways to the four texels around a place.
 fn with_ways_to(sum: Ways, map: LightMap, place_mm: vec3f) -> Ways {
     let size = vec2f(textureDimensions(distances));
-    let uv = map_uv(map, in_map_axes(map, place_mm));
+    let uv = light_map_uv(map, in_map_axes(map, place_mm));
     if any(uv < vec2f(0.0)) || any(uv > vec2f(1.0)) {
         return sum;
     }

@@ -6,7 +6,7 @@
 @group(0) @binding(32) var transmission: texture_2d<f32>;
 
 fn exitance_at(place: Place, texels: Around, weights: vec4f) -> Exitance {
-    let half_texels = around(place.uv, textureDimensions(transmission));
+    let half_texels = around(place.atlas_uv, textureDimensions(transmission));
     let half_weights = chart_weights(half_charts, half_texels, place.chart);
     return Exitance(
         blend(local, texels, weights).rgb,

@@ -35,7 +35,7 @@ fn exitance_at(place: Place, texels: Around, weights: vec4f) -> Exitance {
             break if l >= arrayLength(&lights);
         }
     }
-    let around = from_environment(place.uv, place.chart, place.smooth_normal, place.normal);
+    let around = from_environment(place.atlas_uv, place.chart, place.smooth_normal, place.normal);
     let light = sum + around * mean_rho_dt(rho_dt_table, linear, place.roughness, place.rho_s);
     return Exitance(light * film(place.albedo, material.albedo_mix) * wrap.colour, vec3f(0.0));
 }
@@ -157,7 +157,7 @@ fn visible_above(l: u32, place_mm: vec3f) -> f32 {
     }
     let axes_mm = in_map_axes(map, place_mm);
     let size = vec2f(textureDimensions(depths));
-    let texel = vec2i(floor(map_uv(map, axes_mm) * size));
+    let texel = vec2i(floor(light_map_uv(map, axes_mm) * size));
     if any(texel < vec2i(0)) || any(texel >= vec2i(size)) {
         return 1.0;
     }

@@ -5,6 +5,7 @@
 
 use super::metric::{Metric, conductivity};
 use super::shore::{Read, Shore, centre};
+use crate::passes::atlas::barycentric;
 use cutis_scene::Object;
 use glam::{Mat4, Vec2, Vec4};
 use rayon::prelude::*;
@@ -36,13 +37,23 @@ struct Piece {
 pub struct Cell {
     /// What its corners read, along u, then along v.
     pub corners: [Read; 4],
-    first: usize,
+    /// The first texel of its square.
+    pub first: usize,
+    /// The chart that it is of.
+    pub chart: u32,
+    /// The part of its square that it is.
+    pub part_of_square: f32,
+    /// Its middle, from the first texel of its square, texels.
+    middle_of_square: Vec2,
     /// How much better heat flows here than by the medium.
     conductivity: f32,
     pieces: Vec<Piece>,
 }
 
 impl Moments {
+    /// Of the square itself.
+    pub const WHOLE: Self = Self { one: 1.0, x: 0.5, y: 0.5, xx: 1.0 / 3.0, xy: 0.25, yy: 1.0 / 3.0 };
+
     /// Of a convex polygon, corner by corner.
     fn of(polygon: &[Vec2]) -> Self {
         let mut sum = Self::default();
@@ -104,6 +115,11 @@ impl Cell {
         self.conductivity
     }
 
+    /// Its middle, texels.
+    pub fn middle(&self, size: usize) -> Vec2 {
+        centre(self.first, size) + self.middle_of_square
+    }
+
     /// Its area by corner, mm², and its slopes, of the metric of every triangle.
     pub fn integrals(&self, metrics: &[Metric]) -> (Vec4, Mat4) {
         self.pieces.iter().fold((Vec4::ZERO, Mat4::ZERO), |(areas, slopes), piece| {
@@ -139,6 +155,13 @@ impl Cells {
         Self { all, of_pieces }
     }
 
+    /// The cells of a square, by its first texel, with their numbers.
+    pub fn at(&self, first: usize) -> impl Iterator<Item = (u32, &Cell)> {
+        let from = self.all.partition_point(|cell| cell.first < first);
+        let cells = self.all[from..].iter().take_while(move |cell| cell.first == first);
+        (from as u32..).zip(cells)
+    }
+
     /// The cell that a triangle has a piece in, by the first texel of its square.
     pub fn of(&self, first: usize, triangle: u32) -> Option<u32> {
         self.of_pieces.get(&(first, triangle)).copied()
@@ -153,18 +176,46 @@ fn cut_cells(object: &Object, shore: &Shore) -> Vec<Cell> {
             (first, object.charts.of_triangle[piece.triangle as usize], piece, corners)
         })
         .collect();
-    let size = shore.size();
-    // By the middle of the square.
-    let at = |first: usize| conductivity(object, (centre(first, size) + 0.5) / size as f32);
     // Both sides of a slit are parts of one chart, but see other corners.
     let mut cells: BTreeMap<(usize, u32, [u32; 4]), Cell> = BTreeMap::new();
     for (first, chart, piece, corners) in found {
         let cell = cells.entry((first, chart, Cell::signature(&corners)));
-        cell.or_insert_with(|| Cell { corners, first, conductivity: at(first), pieces: Vec::new() })
-            .pieces
-            .push(piece);
+        let new = || Cell {
+            corners,
+            first,
+            chart,
+            part_of_square: 0.0,
+            middle_of_square: Vec2::ZERO,
+            conductivity: 1.0,
+            pieces: Vec::new(),
+        };
+        cell.or_insert_with(new).pieces.push(piece);
     }
-    cells.into_values().collect()
+    cells.into_values().map(|cell| summed_up(object, cell, shore.size())).collect()
+}
+
+/// With what follows from all of its pieces; how well heat flows is the mean over them, each by its middle.
+fn summed_up(object: &Object, mut cell: Cell, size: usize) -> Cell {
+    let middle = |Piece { moments, .. }: &Piece| Vec2::new(moments.x, moments.y);
+    cell.part_of_square = cell.pieces.iter().map(|piece| piece.moments.one).sum();
+    cell.middle_of_square = cell.pieces.iter().map(middle).sum::<Vec2>() / cell.part_of_square;
+    let of = |piece: &Piece| {
+        let place = (centre(cell.first, size) + middle(piece) / piece.moments.one) / size as f32;
+        let [b1, b2] = inside(barycentric(object.mesh.corner_atlas_uvs(piece.triangle as usize), place));
+        piece.moments.one * conductivity(object, object.map_uv_at(piece.triangle, b1, b2))
+    };
+    cell.conductivity = if object.material.mean_free_path_scale.texture.is_none() {
+        conductivity(object, Vec2::ZERO)
+    } else {
+        cell.pieces.iter().map(of).sum::<f32>() / cell.part_of_square
+    };
+    cell
+}
+
+/// Weights of corners of which none is outside; of a triangle without an area, which has none, the first corner's.
+fn inside(weights: [f32; 2]) -> [f32; 2] {
+    let [b1, b2] = weights.map(|b| if b.is_finite() { b.clamp(0.0, 1.0) } else { 0.0 });
+    [b1, b2.min(1.0 - b1)]
 }
 
 /// What a triangle has of squares that may be cut.
@@ -239,13 +290,14 @@ mod tests {
     #[test]
     fn a_square_is_what_textbooks_say() {
         let whole = [Vec2::new(-3.0, -3.0), Vec2::new(9.0, -3.0), Vec2::new(-3.0, 9.0)];
-        let moments = Moments::of(&clipped(whole, Vec2::ZERO, Vec2::ONE));
         let metric = Metric { a: Vec3::new(1.0, 0.0, 1.0), area_mm2: 1.0 };
-        let slopes = moments.slopes(&metric).to_cols_array_2d();
-        for (found, exact) in slopes[0].iter().zip([4.0 / 6.0, -1.0 / 6.0, -1.0 / 6.0, -2.0 / 6.0]) {
-            assert!((found - exact).abs() < 1e-6, "{slopes:?}");
+        for moments in [Moments::of(&clipped(whole, Vec2::ZERO, Vec2::ONE)), Moments::WHOLE] {
+            let slopes = moments.slopes(&metric).to_cols_array_2d();
+            for (found, exact) in slopes[0].iter().zip([4.0 / 6.0, -1.0 / 6.0, -1.0 / 6.0, -2.0 / 6.0]) {
+                assert!((found - exact).abs() < 1e-6, "{slopes:?}");
+            }
+            assert!((moments.shares() - 0.25).abs().max_element() < 1e-6);
         }
-        assert!((moments.shares() - 0.25).abs().max_element() < 1e-6);
         let half = [Vec2::ZERO, Vec2::X, Vec2::Y];
         assert!((Moments::of(&clipped(half, Vec2::ZERO, Vec2::ONE)).one - 0.5).abs() < 1e-6);
     }

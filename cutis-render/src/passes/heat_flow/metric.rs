@@ -69,9 +69,10 @@ pub fn metrics(object: &Object, size: usize, texel_mm: f32) -> Vec<Metric> {
     (0..object.mesh.triangles.len()).into_par_iter().map(|t| of(t).unwrap_or_default()).collect()
 }
 
-/// How much better heat flows under a place than by the medium: the factor on its mean free path, squared.
-pub fn conductivity(object: &Object, uv: Vec2) -> f32 {
-    object.material.mean_free_path_scale_at(uv).powi(2)
+/// How much better heat flows under a place of the material's maps than by the medium: the factor on its mean free path,
+/// squared.
+pub fn conductivity(object: &Object, map_uv: Vec2) -> f32 {
+    object.material.mean_free_path_scale_at(map_uv).powi(2)
 }
 
 /// Its mean over the texels of charts.
@@ -92,7 +93,7 @@ fn conductivities(object: &Object, atlas: &Atlas) -> impl ParallelIterator<Item 
     let varies = object.material.mean_free_path_scale.texture.is_some();
     let count = if varies { atlas.surface.len() } else { 0 };
     let everywhere = (!varies).then(|| conductivity(object, Vec2::ZERO));
-    let of = |i: usize| atlas.uv_under(object, i).map(|uv| conductivity(object, uv));
+    let of = |i: usize| atlas.map_uv_under(object, i).map(|uv| conductivity(object, uv));
     (0..count).into_par_iter().filter_map(of).chain(everywhere)
 }
 
@@ -105,7 +106,8 @@ pub fn metrics_of_texels(object: &Object, atlas: &Atlas, of_triangles: &[Metric]
         if triangle == NO_CHART {
             return Metric::default();
         }
-        let factor = if even { None } else { atlas.uv_under(object, i).map(|uv| conductivity(object, uv)) };
+        let factor =
+            if even { None } else { atlas.map_uv_under(object, i).map(|uv| conductivity(object, uv)) };
         of_triangles[triangle as usize].conducting(factor.unwrap_or(everywhere))
     };
     (0..atlas.surface.len()).into_par_iter().map(of).collect()

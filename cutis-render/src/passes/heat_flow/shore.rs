@@ -57,7 +57,7 @@ impl<'a> Shore<'a> {
         let mut ground = Ground::new(object, size);
         let is_own = |i: usize| {
             // A halved map of charts may have given the texel to another one.
-            let uv = atlas.uv_under(object, i).filter(|_| is_of_its_chart(object, atlas, i));
+            let uv = atlas.atlas_uv_under(object, i).filter(|_| is_of_its_chart(object, atlas, i));
             uv.is_some_and(|uv| (uv * size as f32 - centre(i, size)).length() < CENTRED_TEXELS)
         };
         let own: Vec<bool> = (0..size * size).into_par_iter().map(is_own).collect();
@@ -99,7 +99,7 @@ impl<'a> Shore<'a> {
             .filter(|&i| self.atlas.charts.chart[i] != NO_CHART && !self.own[i])
             .filter_map(|i| {
                 let across = || {
-                    let from = self.atlas.uv_under(self.object, i)? * size as f32;
+                    let from = self.atlas.atlas_uv_under(self.object, i)? * size as f32;
                     self.read(&self.ground.walk(self.atlas.surface[i].triangle, from, centre(i, size) - from))
                 };
                 let read = if is_of_its_chart(self.object, self.atlas, i) { across() } else { None };

@@ -89,7 +89,7 @@ impl<'a> Ground<'a> {
 
     /// Corners on the texture, texels.
     pub fn corners(&self, triangle: u32) -> [Vec2; 3] {
-        self.object.mesh.corner_uvs(triangle as usize).map(|uv| uv * self.size as f32)
+        self.object.mesh.corner_atlas_uvs(triangle as usize).map(|uv| uv * self.size as f32)
     }
 
     /// Goes straight on from a place of a triangle by a step on the texture, both in texels.

@@ -64,7 +64,7 @@ impl<'a> Absorbed<'a> {
         let shine = place.shine();
         let cos = place.normal.dot(towards.dir_to_light).max(0.0);
         let entered = cos * place.visible(l) * place.maps.rho_dt.at(cos, shine.roughness, shine.rho_s);
-        towards.irradiance_w_per_m2 * entered * place.object.material.film_inwards(place.point.uv)
+        towards.irradiance_w_per_m2 * entered * place.object.material.film_inwards(place.point.map_uv)
     }
 
     /// Light that comes through to a place that faces away, W/m²: the mean over the ways to places around it.
@@ -104,12 +104,12 @@ impl<'a> Absorbed<'a> {
         match self.settings().entry {
             EntryPoint::Distance => {
                 let cos = -place.normal.dot(towards.dir_to_light);
-                of(place.object_number, place.point.uv, cos.max(0.0), 1.0)
+                of(place.object_number, place.point.map_uv, cos.max(0.0), 1.0)
             }
             EntryPoint::Surface => {
                 let normal = shading_normal(&self.lit.scene.objects[way.object], &way.entry);
                 let cos = normal.dot(towards.dir_to_light).max(0.0);
-                of(way.object, way.entry.uv, cos, cos)
+                of(way.object, way.entry.map_uv, cos, cos)
             }
         }
     }
@@ -157,8 +157,10 @@ impl Inside for Absorbed<'_> {
         let shine = place.shine();
         let around = from_environment(self.lit.environment, &maps.ambient, &point, place.normal, place.chart)
             * maps.rho_dt.mean(shine.roughness, shine.rho_s);
-        let mut sum =
-            Exitance { local: around * place.object.material.film_inwards(point.uv), ..Exitance::default() };
+        let mut sum = Exitance {
+            local: around * place.object.material.film_inwards(point.map_uv),
+            ..Exitance::default()
+        };
         for (l, light) in self.lit.scene.lights.iter().enumerate() {
             let towards = light.sample(point.position_mm);
             if faces(&point, light) {

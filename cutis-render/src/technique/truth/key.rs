@@ -29,10 +29,12 @@ pub fn of(scene: &Scene, settings: &Settings) -> u64 {
         object.name.hash(&mut hasher);
         hash_material(&object.material, &mut hasher);
         object.mesh.triangles.hash(&mut hasher);
-        let Mesh { positions_mm, normals, tangents, uvs, .. } = &object.mesh;
+        let Mesh { positions_mm, normals, tangents, uvs, atlas_uvs, .. } = &object.mesh;
         positions_mm.iter().chain(normals).for_each(|v| v.to_array().map(f32::to_bits).hash(&mut hasher));
         tangents.iter().for_each(|v| v.to_array().map(f32::to_bits).hash(&mut hasher));
-        uvs.iter().for_each(|v| v.to_array().map(f32::to_bits).hash(&mut hasher));
+        uvs.iter()
+            .chain(atlas_uvs.iter().flatten())
+            .for_each(|v| v.to_array().map(f32::to_bits).hash(&mut hasher));
     }
     hasher.finish()
 }

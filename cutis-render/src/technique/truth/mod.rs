@@ -9,7 +9,7 @@ mod key;
 
 use crate::film::Checkpoint;
 use crate::frame::{Frame, PassTime};
-use crate::lit_scene::left_out;
+use crate::lit_scene::{laid_out_anew, left_out};
 use crate::settings::{Aov, AovSpace, Settings, TechniqueName};
 use crate::transport::path::Transport;
 use crate::{Progress, RenderError};
@@ -67,7 +67,8 @@ fn warnings(scene: &Scene, settings: &Settings) -> Vec<String> {
         let (name, scale) = (&object.name, object.material.thickness_scale);
         format!("the truth takes '{name}' as thick as it is: it does not know the thickness scale of {scale}")
     });
-    words.chain(left_out(scene, TechniqueName::Truth, settings.diffusion)).collect()
+    let left_out = left_out(scene, TechniqueName::Truth, settings.diffusion);
+    words.chain(left_out).chain(laid_out_anew(scene, settings)).collect()
 }
 
 /// Takes samples until there are enough, or the noise is low enough.

@@ -83,7 +83,8 @@ fn assert_regions_alike(test: &str, normals: Normals, per_batch: u64) {
     let per = per_batch as f64;
     let from_lamp = by_batches(|batch| {
         let mut flux = [DVec3::ZERO; REGIONS * REGIONS];
-        entrances.walk(7, batch * per_batch, per_batch, |exit| flux[region_of(exit.uv)] += exit.flux / per);
+        entrances
+            .walk(7, batch * per_batch, per_batch, |exit| flux[region_of(exit.atlas_uv)] += exit.flux / per);
         flux
     });
     let from_places = by_batches(|batch| {
@@ -92,7 +93,7 @@ fn assert_regions_alike(test: &str, normals: Normals, per_batch: u64) {
             let mut random = Random::new(8, batch, path);
             let (meeting, place_mm) = entrances.place(&mut random);
             let exitance = of_place(&transport, meeting, place_mm, &mut random);
-            flux[region_of(transport.solids.uv(&meeting))] += exitance * (entrances.area_mm2() / per);
+            flux[region_of(transport.solids.atlas_uv(&meeting))] += exitance * (entrances.area_mm2() / per);
         }
         flux
     });

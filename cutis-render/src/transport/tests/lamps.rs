@@ -61,7 +61,7 @@ fn assert_lamp_as_eye(what: &str, scene: &Scene, packets: u64, paths: u64) {
     for number in 0..packets {
         let mut flux = [DVec3::ZERO; 2];
         entrances.walk(3, number, 1, |exit| {
-            let (theta, phi) = (exit.uv.y * PI, exit.uv.x * TAU);
+            let (theta, phi) = (exit.atlas_uv.y * PI, exit.atlas_uv.x * TAU);
             let dir = Vec3::new(theta.sin() * phi.cos(), theta.cos(), theta.sin() * phi.sin());
             flux[half(dir.as_dvec3())] += exit.flux / area_mm2;
         });

@@ -48,7 +48,7 @@ fn strip_of(scene: &Scene, exit: &Exit) -> Option<usize> {
         return None;
     }
     let (u, v) = (normal.any_orthonormal_vector(), normal.cross(normal.any_orthonormal_vector()));
-    let [s, t] = (exit.uv * 2.0 - 1.0).to_array();
+    let [s, t] = (exit.atlas_uv * 2.0 - 1.0).to_array();
     let place_mm = (u * s + v * t) * BLOCK_MM;
     let strip = (f64::from(place_mm.x) / STRIP_MM + STRIPS as f64).floor();
     let inside = f64::from(place_mm.y.abs()) < HALF_LENGTH_MM && strip >= 0.0 && strip < 2.0 * STRIPS as f64;

@@ -34,8 +34,8 @@ struct Gathered {
     /// Whether a primitive came without normals or tangents, so that they must be computed for all.
     lacks_normals: bool,
     lacks_tangents: bool,
-    /// Whether one came without texture coordinates.
-    lacks_uvs: bool,
+    /// Whether one came with texture coordinates.
+    has_uvs: bool,
     /// Morph targets that some primitive gives without offsets of normals.
     lacks_normal_offsets: BTreeSet<usize>,
     /// Number of the first joint of each skin.
@@ -146,9 +146,10 @@ impl Gathering {
                 gathered.mesh.tangents.clear();
             }
             let material = material::read(document, key, textures, warnings)?;
-            let Gathered { name, place, mut mesh, lacks_uvs, .. } = gathered;
+            let Gathered { name, place, mut mesh, has_uvs, .. } = gathered;
             material.uv_transform.apply(&mut mesh);
             let material = material.material;
+            let lacks_uvs = !has_uvs;
             pieces.push(Piece { name, place, mesh, lacks_uvs, own_material: material.clone(), material });
         }
         Ok(pieces)
@@ -269,8 +270,8 @@ impl Reading<'_> {
         mesh.positions_mm.extend(
             positions.iter().enumerate().map(|(i, p)| placement.of(i).transform_point3(Vec3::from_array(*p))),
         );
-        let lacks_uvs = !self.append_uvs(mesh, count)?;
-        gathered.lacks_uvs |= lacks_uvs;
+        let has_uvs = self.append_uvs(mesh, count)?;
+        gathered.has_uvs |= has_uvs;
         let normals = self.floats::<3>(Semantic::Normals, "NORMAL", Accept::Float)?;
         gathered.lacks_normals |= normals.is_none();
         let normals = self.one_per_vertex(normals, count, [0.0; 3], "NORMAL")?;

@@ -9,7 +9,7 @@ mod pose;
 
 use super::file::{Folder, read_bytes};
 use super::textures::Textures;
-use super::{CameraChoice, Parts, Piece, ReadOptions, read_mesh_file};
+use super::{AtlasChoice, CameraChoice, Parts, Piece, ReadOptions, read_mesh_file};
 use crate::head::{HeadDetail, built_in};
 use crate::{MeshOrigin, SceneError};
 use keys::{Keys, Source};
@@ -108,9 +108,15 @@ fn materials<'a>(root: &Keys<'a>, objects: usize) -> Result<Vec<Keys<'a>>, Scene
 
 /// Reads `[mesh]`.
 fn mesh_source(keys: &Keys, context: &Context) -> Result<MeshSource, SceneError> {
-    keys.only(&["path", "builtin", "triangles", "map_size", "millimetres_per_unit", "flip_v"])?;
+    keys.only(&["path", "builtin", "triangles", "map_size", "millimetres_per_unit", "flip_v", "atlas"])?;
     let mm = keys.number_in("millimetres_per_unit", f32::MIN_POSITIVE..=1e6)?;
     let flip_v = keys.boolean("flip_v")?.unwrap_or(false);
+    let atlas = keys.string("atlas")?.map(|name| atlas_choice(keys, name)).transpose()?;
+    if keys.has("builtin") && context.options.atlas.or(atlas) == Some(AtlasChoice::New) {
+        return Err(
+            keys.error("builtin", "the built-in head has an atlas of its own; `new` is for mesh files")
+        );
+    }
     for key in ["triangles", "map_size"] {
         if keys.has("path") && keys.has(key) {
             return Err(keys.error(key, "is for the built-in head; a mesh file has what it has"));
@@ -126,11 +132,17 @@ fn mesh_source(keys: &Keys, context: &Context) -> Result<MeshSource, SceneError>
             let options = ReadOptions {
                 millimetres_per_unit: context.options.millimetres_per_unit.or(mm),
                 flip_v: flip_v != context.options.flip_v,
+                atlas: context.options.atlas.or(atlas),
                 ..ReadOptions::default()
             };
             Ok(MeshSource::File(path, options))
         }
     }
+}
+
+fn atlas_choice(keys: &Keys, name: &str) -> Result<AtlasChoice, SceneError> {
+    let known = AtlasChoice::ALL.into_iter().find(|choice| choice.name() == name);
+    known.ok_or_else(|| keys.error("atlas", format!("`{name}` is not known; `own` and `new` are")))
 }
 
 /// How fine the built-in head is.

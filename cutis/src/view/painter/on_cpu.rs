@@ -44,7 +44,7 @@ impl Kept {
         let Settings { irradiance_size, shadow_samples, .. } = subject.settings;
         let scene = Arc::new(subject.look.applied_to(subject.scene)?);
         Ok(Self {
-            warnings: warnings(&scene, subject.settings.technique, subject.settings.diffusion),
+            warnings: warnings(&scene, &subject.settings),
             lit: LitScene::new(scene, &subject.settings, watch)?,
             scene: Arc::clone(subject.scene),
             look: subject.look.clone(),

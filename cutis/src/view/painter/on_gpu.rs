@@ -209,7 +209,7 @@ impl OnGpu {
         let layers = ready.layers(&renderer.gpu, &renderer.passes, &settings.aovs, AovSpace::Picture)?;
         let wanted: Vec<_> = texture_maps().filter(|_| subject.wants_maps).collect();
         let maps = ready.layers(&renderer.gpu, &renderer.passes, &wanted, AovSpace::Texture)?;
-        let mut told = warnings(&kept.uploaded, settings.technique, settings.diffusion);
+        let mut told = warnings(&kept.uploaded, settings);
         told.extend(ready.shared.warnings.iter().cloned());
         let frame = Frame {
             width: settings.width,

@@ -48,7 +48,7 @@ impl Estimator for FromLights<'_, '_> {
         self.packets += count * per_sample;
         entrances.walk(*seed, first * per_sample, count * per_sample, |exit| {
             if exit.object == 0 && has_texels[exit.triangle as usize] {
-                let texel = texel_of(exit.uv, *size);
+                let texel = texel_of(exit.atlas_uv, *size);
                 sums[texel] += exit.flux;
                 squares[texel] += exit.flux * exit.flux;
             }
@@ -77,7 +77,7 @@ impl Estimator for FromLights<'_, '_> {
 }
 
 fn has_texels(object: &Object, triangle: usize) -> bool {
-    let [a, b, c] = object.mesh.corner_uvs(triangle);
+    let [a, b, c] = object.mesh.corner_atlas_uvs(triangle);
     (b - a).perp_dot(c - a) != 0.0
 }
 
@@ -85,7 +85,7 @@ fn has_texels(object: &Object, triangle: usize) -> bool {
 pub(super) fn areas_mm2(object: &Object, size: usize) -> Vec<f64> {
     let mut areas = vec![0.0; size * size];
     for triangle in (0..object.mesh.triangles.len()).filter(|&triangle| has_texels(object, triangle)) {
-        let [a, b, c] = object.mesh.corner_uvs(triangle);
+        let [a, b, c] = object.mesh.corner_atlas_uvs(triangle);
         let longest = (b - a).length().max((c - b).length()).max((a - c).length());
         let parts = ((longest * size as f32 * PARTS).ceil() as usize).clamp(1, 4 * size);
         let share = f64::from(object.mesh.area_mm2(triangle)) / (parts * parts) as f64;

@@ -5,10 +5,13 @@
 #[path = "common/convolution.rs"]
 mod convolution;
 
-use convolution::{Direct, Place, Spread, VARIANCES_MM2, compared, errors, pattern, places};
+use convolution::{
+    Direct, Place, Spread, VARIANCES_MM2, compared, errors, is_near, pattern, places, seams_mm,
+};
 use cutis_render::passes::atlas::charts_that_hold_light;
 use cutis_scene::charts::Seam;
-use cutis_scene::{Object, ReadOptions, read_scene};
+use cutis_scene::unwrap::unwrap;
+use cutis_scene::{Material, Object, ReadOptions, read_scene};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -54,6 +57,41 @@ fn heat_flow_is_near_the_direct_convolution() {
                 fine_flow < allowed * fine && coarse_flow < allowed * coarse,
                 "{variance_mm2} {name}: {rows:?}"
             );
+        }
+    }
+}
+
+/// At the same places, on maps of the same size, by an atlas that is made for the head.
+#[test]
+fn a_new_atlas_serves_light_better() {
+    let Some(own) = mesh("lee_perry_smith/LeePerrySmith.obj", Some(950.0)) else { return };
+    let mut mesh = own.mesh.clone();
+    unwrap(&mesh, None, None).unwrap().lay(&mut mesh);
+    let new = Object::new("new atlas", mesh, Material::default());
+    let [everywhere, near] = compared(&own);
+    let new_seams_mm = seams_mm(&new);
+    let near_new: Vec<Place> =
+        everywhere.iter().filter(|p| is_near(&new_seams_mm, p.position_mm)).copied().collect();
+    let direct = Direct::new(&own);
+    let spreads = [(&own, 1024), (&new, 1024), (&own, 512), (&new, 512)]
+        .map(|(object, size)| (object, Spread::new(object, size, true, pattern)));
+    eprintln!("{} charts", new.charts.count);
+    eprintln!("| variance, mm² | where | own, 1024² | new, 1024² | own, 512² | new, 512² |");
+    for (n, variance_mm2) in VARIANCES_MM2.into_iter().enumerate() {
+        let sets =
+            [("everywhere", &everywhere), ("< 3 mm from an old seam", &near), ("from a new one", &near_new)];
+        for (name, places) in sets {
+            let exact: Vec<f32> = places.par_iter().map(|p| direct.at(p.position_mm, variance_mm2)).collect();
+            let rows = spreads.each_ref().map(|(object, spread)| {
+                let read = |p: &Place| spread.at(object, n + 1, p);
+                errors(&places.iter().map(read).zip(exact.iter().copied()).collect::<Vec<_>>())
+            });
+            let cells: Vec<String> =
+                rows.iter().map(|[rms, p99]| format!("{rms:.1} % / {p99:.1} %")).collect();
+            eprintln!("| {variance_mm2} | {name} | {} |", cells.join(" | "));
+            let [own_fine, new_fine, own_coarse, new_coarse] = rows.map(|[rms, _]| rms);
+            let allowed = if name == "everywhere" { 0.9 } else { 0.6 };
+            assert!(new_fine < allowed * own_fine && new_coarse < allowed * own_coarse, "{name}: {rows:?}");
         }
     }
 }

@@ -5,7 +5,7 @@
 
 use super::cells::{Cell, Cells};
 use super::coarse::Halving;
-use super::elements::elements;
+use super::elements::{CutCells, elements};
 use super::gaps::{Gap, gaps};
 use super::metric::{SMALLEST, best_conductivity, metrics, metrics_of_texels};
 use super::padding::padding;
@@ -76,12 +76,12 @@ impl Layout {
     /// Of an object and its atlas.
     pub fn new(object: &Object, shore: &Shore) -> Self {
         let size = shore.size();
-        let whole = (0..size * size)
+        let whole: Vec<bool> = (0..size * size)
             .into_par_iter()
             .map(|i| i % size + 1 < size && i / size + 1 < size && shore.is_whole(i))
             .collect();
         let (cells, padding) = rayon::join(|| Cells::new(object, shore), || padding(object, shore));
-        let gaps = gaps(shore, &cells);
+        let gaps = gaps(shore, &cells, &whole);
         let cells = cells.all;
         let best_conductivity =
             cells.iter().map(Cell::conductivity).fold(best_conductivity(object, shore.atlas), f32::max);
@@ -102,7 +102,7 @@ impl Exchange {
         let metrics = metrics(object, size, texel_mm);
         let mut squares = Squares::new(size, &layout.whole, &metrics_of_texels(object, atlas, &metrics));
         let mut own_mm2 = squares.areas_mm2();
-        let elements = elements(object, layout, &metrics, &mut own_mm2);
+        let cells = CutCells::new(&layout.cells, &metrics, &mut own_mm2);
         let areas_mm2 = halving.map_or(own_mm2, |halving| halving.areas_mm2.clone());
         // What is less is rounding, and its inverse beyond bounds.
         let least_mm2 = LEAST_AREA * texel_mm * texel_mm;
@@ -116,6 +116,7 @@ impl Exchange {
         if halving.is_some() {
             squares.slow_down(&areas_mm2, limit_per_mm2);
         }
+        let elements = elements(object, layout, &metrics, &squares, &cells);
         let strengths = squares.strengths();
         let pattern = layout.pattern.get_or_init(|| Pattern::new(&elements, size * size));
         let mut rows = pattern.filled(&elements, |_| 1.0, |strength| strength);

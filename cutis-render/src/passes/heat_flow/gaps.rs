@@ -2,13 +2,14 @@
 //!
 //! Bilinear light of two charts does not quite meet at their seam. The symmetric terms of Nitsche (1971) mend that: what flows
 //! across, by the slopes of both sides, times the gap, and a spring that pulls the gap shut. The slope of a cell that a seam has left
-//! little of is a poor witness: sides count by what their cells can bear (Annavarapu, Hautefeuille & Dolbow 2012), and what cells
-//! cannot bear is left out, so that light never grows.
+//! little of is a poor witness: one beside it is asked instead. Sides count by what their witnesses can bear (Annavarapu, Hautefeuille
+//! & Dolbow 2012), and what those cannot bear is left out, so that light never grows.
 
 use super::cells::{Cell, Cells};
 use super::metric::{Metric, derivatives_mm_per_texel};
 use super::seam_edges::{SeamEdge, seam_edges};
-use super::shore::Shore;
+use super::shore::{Read, Shore, centre};
+use super::witness::{Witness, Witnesses};
 use cutis_scene::Object;
 use glam::{DMat3, DVec3, Mat4, Vec2, Vec3, Vec4};
 use rayon::prelude::*;
@@ -16,7 +17,7 @@ use rayon::prelude::*;
 /// Places along a seam per texel.
 const PLACES_PER_TEXEL: f32 = 2.0;
 /// Strength of the spring, by the width of a texel.
-const SPRING: f32 = 1.0;
+const SPRING: f32 = 1.5;
 /// Slopes that a cell cannot bear at all, by the area of a texel.
 const UNBEARABLE: f32 = 1e6;
 
@@ -35,6 +36,10 @@ struct Side {
     cell: u32,
     /// Place in the cell's square.
     place: Vec2,
+    /// Who tells the slope.
+    witness: Witness,
+    /// The nearest place in the witness's square.
+    witness_place: Vec2,
     /// Part of the edge that it stands for.
     part: f32,
 }
@@ -48,36 +53,39 @@ pub struct Jump {
     pub length_mm: f32,
     /// Strength of the spring, 1/mm.
     pub spring_per_mm: f32,
-    /// The cells on both sides.
-    pub cells: [u32; 2],
-    /// Part of each cell's energy that its flow takes at most.
+    /// The witnesses on both sides.
+    pub witnesses: [Witness; 2],
+    /// Part of each witness's energy that its flow takes at most.
     pub load: f32,
 }
 
 /// Places along all seams.
-pub fn gaps(shore: &Shore, cells: &Cells) -> Vec<Gap> {
-    seam_edges(&shore.ground).par_iter().flat_map_iter(|edge| along_edge(shore, cells, edge)).collect()
+pub fn gaps(shore: &Shore, cells: &Cells, whole: &[bool]) -> Vec<Gap> {
+    let witnesses = Witnesses { shore, cells, whole };
+    seam_edges(&shore.ground).par_iter().flat_map_iter(|edge| along_edge(&witnesses, edge)).collect()
 }
 
-fn along_edge(shore: &Shore, cells: &Cells, edge: &SeamEdge) -> Vec<Gap> {
-    let count = edge.place_count(PLACES_PER_TEXEL, shore.size());
+fn along_edge(witnesses: &Witnesses, edge: &SeamEdge) -> Vec<Gap> {
+    let count = edge.place_count(PLACES_PER_TEXEL, witnesses.shore.size());
     let part = 1.0 / count as f32;
     let gap = |[here, beyond]: [Vec2; 2]| {
-        let here = side(shore, cells, edge.sides[0], here, part)?;
-        let beyond = side(shore, cells, edge.sides[1], beyond, part)?;
+        let here = side(witnesses, edge.sides[0], here, part)?;
+        let beyond = side(witnesses, edge.sides[1], beyond, part)?;
         Some(Gap { sides: [here, beyond] })
     };
     edge.places(count).filter_map(gap).collect()
 }
 
-fn side(shore: &Shore, cells: &Cells, (triangle, corner): (u32, u8), at: Vec2, part: f32) -> Option<Side> {
-    let size = shore.size();
+fn side(witnesses: &Witnesses, (triangle, corner): (u32, u8), at: Vec2, part: f32) -> Option<Side> {
+    let (size, cells) = (witnesses.shore.size(), witnesses.cells);
     let origin = (at - 0.5).floor().clamp(Vec2::ZERO, Vec2::splat(size as f32 - 2.0));
     let cell = cells.of(origin.y as usize * size + origin.x as usize, triangle)?;
     let place = at - 0.5 - origin;
     // Texture coordinates may leave the map.
     let is_on_map = place.min_element() >= -0.5 && place.max_element() <= 1.5;
-    is_on_map.then_some(Side { triangle, corner, cell, place, part })
+    let witness = witnesses.at(cell, triangle, at);
+    let witness_place = (at - centre(witness.first(&cells.all), size)).clamp(Vec2::ZERO, Vec2::ONE);
+    is_on_map.then_some(Side { triangle, corner, cell, place, witness, witness_place, part })
 }
 
 impl Gap {
@@ -87,16 +95,18 @@ impl Gap {
         object: &Object,
         size: usize,
         metrics: &[Metric],
-        (cells, slopes): (&[Cell], &[Mat4]),
+        cells: &[Cell],
+        slopes: impl Fn(Witness) -> Mat4,
     ) -> Jump {
-        let [here, beyond] = &self.sides;
         let nothing = Measures { flows: [Vec2::ZERO; 2], length_mm: 0.0, spring_per_mm: 0.0, load: 0.0 };
         let Measures { flows, length_mm, spring_per_mm, load } =
-            self.measures(object, size, metrics, (cells, slopes)).unwrap_or(nothing);
-        let mut jump =
-            Jump { terms: Vec::new(), length_mm, spring_per_mm, cells: [here.cell, beyond.cell], load };
-        jump.add(here, cells, 1.0, flows[0]);
-        jump.add(beyond, cells, -1.0, flows[1]);
+            self.measures(object, size, metrics, cells, slopes).unwrap_or(nothing);
+        let witnesses = self.sides.each_ref().map(|side| side.witness);
+        let mut jump = Jump { terms: Vec::new(), length_mm, spring_per_mm, witnesses, load };
+        for (side, (sign, flow)) in self.sides.iter().zip([1.0, -1.0].into_iter().zip(flows)) {
+            jump.add(&cells[side.cell as usize].corners, side.gap_shares() * sign, Vec4::ZERO);
+            jump.add(&side.witness.corners(cells, size), Vec4::ZERO, side.slope_shares(flow));
+        }
         jump
     }
 
@@ -105,7 +115,8 @@ impl Gap {
         object: &Object,
         size: usize,
         metrics: &[Metric],
-        (cells, slopes): (&[Cell], &[Mat4]),
+        cells: &[Cell],
+        slopes: impl Fn(Witness) -> Mat4,
     ) -> Option<Measures> {
         let [here, beyond] = &self.sides;
         let p = object.mesh.corners_mm(here.triangle as usize);
@@ -119,7 +130,7 @@ impl Gap {
         let spring_per_mm = SPRING * 2.0 * coarse * fine / (coarse + fine);
         let burdens = [(here, out), (beyond, into)].map(|(side, step)| {
             let most = UNBEARABLE * step.length_squared();
-            burden(&slopes[side.cell as usize], side.shares(step).1).min(most).max(f32::MIN_POSITIVE)
+            burden(&slopes(side.witness), side.slope_shares(step)).min(most).max(f32::MIN_POSITIVE)
         });
         let sum = burdens[0] + burdens[1];
         let load = length_mm / spring_per_mm * burdens[0] * burdens[1] / sum;
@@ -162,24 +173,29 @@ impl Side {
         texels.is_finite().then_some(texels)
     }
 
-    /// Shares of the corners in the light of the place, and in its slope along a step.
-    fn shares(&self, step: Vec2) -> (Vec4, Vec4) {
+    /// Shares of its cell's corners in the light of the place.
+    fn gap_shares(&self) -> Vec4 {
         let Vec2 { x, y } = self.place;
-        let shares = Vec4::new((1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y);
+        Vec4::new((1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y)
+    }
+
+    /// Shares of its witness's corners in the slope along a step.
+    fn slope_shares(&self, step: Vec2) -> Vec4 {
+        let Vec2 { x, y } = self.witness_place;
         let along_u = Vec4::new(y - 1.0, 1.0 - y, -y, y);
         let along_v = Vec4::new(x - 1.0, -x, 1.0 - x, x);
-        (shares, along_u * step.x + along_v * step.y)
+        along_u * step.x + along_v * step.y
     }
 }
 
 impl Jump {
-    fn add(&mut self, side: &Side, cells: &[Cell], sign: f32, step: Vec2) {
-        let (shares, slopes) = side.shares(step);
-        for (k, read) in cells[side.cell as usize].corners.iter().enumerate() {
+    /// Adds what corners share in the gap and in the flow.
+    fn add(&mut self, corners: &[Read; 4], gaps: Vec4, flows: Vec4) {
+        for (k, read) in corners.iter().enumerate() {
             for &(texel, weight) in read {
-                let (gap, flow) = (sign * shares[k] * weight, slopes[k] * weight);
+                let (gap, flow) = (gaps[k] * weight, flows[k] * weight);
                 match self.terms.iter_mut().find(|(known, ..)| *known == texel) {
-                    Some((_, sum, flows)) => (*sum, *flows) = (*sum + gap, *flows + flow),
+                    Some((_, gaps, flows)) => (*gaps, *flows) = (*gaps + gap, *flows + flow),
                     None => self.terms.push((texel, gap, flow)),
                 }
             }

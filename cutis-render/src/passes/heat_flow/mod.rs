@@ -25,6 +25,7 @@ mod squares;
 mod stencil;
 mod sweep;
 mod walk;
+mod witness;
 
 use crate::passes::atlas::{Atlas, ChartMap};
 use crate::passes::blur::Fields;
@@ -43,6 +44,10 @@ use std::sync::Arc;
 
 /// A Gaussian may live in a smaller map when its standard deviation is still this many texels there.
 const COARSE_DEVIATION_TEXELS: f32 = 4.0;
+/// If less than this part of the texels lies inside of charts, and not at their edges, where coarse light is less true, …
+const LEAST_INSIDE: f32 = 0.92;
+/// … a Gaussian may do so only when it is this many texels wide there.
+const CUT_DEVIATION_TEXELS: f32 = 12.0;
 /// Smallest map: below this, charts dissolve and nothing is left to save.
 const MIN_SIZE: usize = 128;
 /// Mean variance that the bilinear read of a coarse map adds, texel².
@@ -93,16 +98,20 @@ impl HeatFlow {
         let mut left = variances_mm2;
         let (mut atlas, mut added_texel2) = (atlas.clone(), 0.0);
         loop {
-            let halves = atlas.size.is_multiple_of(2) && atlas.size / 2 >= MIN_SIZE;
-            let wide = |v: &f32| halves && v.sqrt() * narrowest >= COARSE_DEVIATION_TEXELS * 2.0 * texel_mm;
+            let mut level = Level::new(object, atlas, levels.last(), (texel_mm, usual));
+            let size = level.atlas.size;
+            let halves = size.is_multiple_of(2) && size / 2 >= MIN_SIZE;
+            let is_cut = level.part_inside() < LEAST_INSIDE;
+            let least_texels = if is_cut { CUT_DEVIATION_TEXELS } else { COARSE_DEVIATION_TEXELS };
+            let wide = |v: &f32| halves && v.sqrt() * narrowest >= least_texels * 2.0 * texel_mm;
             let here = left.iter().position(wide).unwrap_or(left.len());
             // What halving and reading add is as wide everywhere, whatever flows.
             let added_mm2 = added_texel2 * texel_mm * texel_mm / usual;
             let time_mm2 = |v: &f32| 0.5 * (v.min(widest_mm2) - added_mm2).max(0.0);
-            let times_mm2: Vec<f32> = left[..here].iter().map(time_mm2).collect();
-            let size = atlas.size;
-            let charts = halves.then(|| Arc::new(atlas.charts.halved()));
-            levels.push(Level::new(object, atlas, levels.last(), (texel_mm, usual), times_mm2));
+            level.times_mm2 = left[..here].iter().map(time_mm2).collect();
+            level.lay(level.exchange.fastest_rate_per_mm2);
+            let charts = halves.then(|| Arc::new(level.atlas.charts.halved()));
+            levels.push(level);
             left = &left[here..];
             let Some(charts) = charts.filter(|_| !left.is_empty()) else { return Self { levels } };
             let halved = if levels.len() == 1 { 0.0 } else { added_texel2 - BILINEAR_TEXEL2 };
@@ -177,26 +186,30 @@ impl Level {
         atlas: Atlas,
         finer: Option<&Level>,
         (texel_mm, usual_conductivity): (f32, f32),
-        times_mm2: Vec<f32>,
     ) -> Self {
         let shore = Shore::new(object, &atlas);
         let layout = Layout::new(object, &shore);
         let halving =
             finer.map(|finer| Halving::new(&finer.atlas, &finer.exchange.areas_mm2, &shore, &layout));
         let exchange = Exchange::new(object, &atlas, &layout, halving.as_ref(), texel_mm);
-        let mut level = Self {
+        Self {
             atlas,
             layout,
             exchange,
             halving,
             times: Vec::new(),
-            times_mm2,
+            times_mm2: Vec::new(),
             laid_rate_per_mm2: 0.0,
             texel_mm,
             usual_conductivity,
-        };
-        level.lay(level.exchange.fastest_rate_per_mm2);
-        level
+        }
+    }
+
+    /// Part of the texels with light that are not at edges of charts.
+    fn part_inside(&self) -> f32 {
+        let lit = self.exchange.areas_mm2.iter().filter(|area| **area > 0.0).count();
+        let inside = self.layout.whole.iter().filter(|whole| **whole).count();
+        inside as f32 / lit.max(1) as f32
     }
 
     /// Lays stages for waves that fall at that rate at most.

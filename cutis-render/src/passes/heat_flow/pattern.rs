@@ -41,7 +41,7 @@ impl Pattern {
     }
 
     /// The matrix of elements, which are those of the pattern in their order: the sum of what `of` makes of their strengths.
-    /// Each is as strong as the weakest of its texels lets it be. A gap has all texels of its cells: it is never stronger
+    /// Each is as strong as the weakest of its texels lets it be. A gap has all texels of its witnesses: it is never stronger
     /// than they are, and together they can only take energy from the slopes of light.
     pub fn filled(&self, elements: &[Element], pace: impl Fn(u32) -> f32 + Sync, of: fn(f32) -> f32) -> Rows {
         let weakest = |Element { links }: &Element| {

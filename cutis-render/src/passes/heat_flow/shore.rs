@@ -98,14 +98,20 @@ impl<'a> Shore<'a> {
             .into_par_iter()
             .filter(|&i| self.atlas.charts.chart[i] != NO_CHART && !self.own[i])
             .filter_map(|i| {
-                let across = || {
-                    let from = self.atlas.atlas_uv_under(self.object, i)? * size as f32;
-                    self.read(&self.ground.walk(self.atlas.surface[i].triangle, from, centre(i, size) - from))
+                let to = |from: Vec2, triangle: u32| {
+                    self.read(&self.ground.walk(triangle, from, centre(i, size) - from))
                 };
-                let read = if is_of_its_chart(self.object, self.atlas, i) { across() } else { None };
+                let read = if is_of_its_chart(self.object, self.atlas, i) {
+                    to(
+                        self.atlas.atlas_uv_under(self.object, i)? * size as f32,
+                        self.atlas.surface[i].triangle,
+                    )
+                } else {
+                    // Where charts are less than a texel apart, the surface under it is another one's.
+                    self.beside(i).and_then(|own| to(centre(own, size), self.atlas.surface[own].triangle))
+                };
                 // Where nothing can be read there, what is nearest on this side goes on.
-                let beside = || Some(vec![(self.beside(i)? as u32, 1.0)]);
-                Some((i as u32, read.or_else(beside)?))
+                Some((i as u32, read.or_else(|| Some(vec![(self.beside(i)? as u32, 1.0)]))?))
             })
             .collect()
     }

@@ -1,7 +1,9 @@
 //! Squares between four texel centres that lie on one chart as a whole: what each links, and how strongly.
 
+use super::cells::Moments;
 use super::metric::Metric;
 use super::shore::corners;
+use glam::Mat4;
 use rayon::prelude::*;
 
 /// The metric of every square, by its first texel; nothing where a square is no whole one.
@@ -43,6 +45,11 @@ impl Squares {
                 *square = square.conducting(weakest);
             },
         );
+    }
+
+    /// Slopes of one, as those of [`super::cells::Cell::integrals`].
+    pub fn slopes(&self, first: usize) -> Mat4 {
+        Moments::WHOLE.slopes(&self.all[first])
     }
 
     /// Links of each texel to the next along u, the next along v, and the next along v to the right and to the left.

@@ -9,6 +9,8 @@ use glam::{Vec2, Vec3};
 const CROSSINGS: usize = 256;
 /// Beyond an edge by this, in barycentric weights, is rounding.
 const ROUNDING: f32 = 1e-5;
+/// What ends so little beyond a seam, or a border, ends on it: centres of texels that lie on the surface may miss it by as much.
+const ON_THE_EDGE_TEXELS: f32 = 3e-3;
 
 /// A mesh that can be walked on.
 pub struct Ground<'a> {
@@ -103,10 +105,15 @@ impl<'a> Ground<'a> {
             };
             let edge_place = at.place + step * part;
             let rest = step * (1.0 - part);
+            let goes_on = self.goes_on(at.triangle, corner);
+            if !goes_on && self.apart(at.triangle, corner, at.place + step) < ON_THE_EDGE_TEXELS {
+                at.place += step;
+                return at;
+            }
             let Some((other, there)) = self.across(at.triangle, corner) else {
                 return Arrival { place: edge_place, at_border: true, ..at };
             };
-            if self.goes_on(at.triangle, corner) {
+            if goes_on {
                 (at.place, step) = (edge_place, rest);
             } else {
                 let Some((place, turned)) =
@@ -119,6 +126,13 @@ impl<'a> Ground<'a> {
             (at.triangle, entered) = (other, Some(there));
         }
         Arrival { at_border: true, ..at }
+    }
+
+    /// How far from an edge of a triangle a place lies, texels.
+    fn apart(&self, triangle: u32, corner: u8, place: Vec2) -> f32 {
+        let [a, b] = self.edge(triangle, corner);
+        let along = (place - a).dot(b - a) / (b - a).length_squared().max(f32::MIN_POSITIVE);
+        place.distance(a.lerp(b, along.clamp(0.0, 1.0)))
     }
 
     /// The edge, by the corner that it begins at, through which a step leaves a triangle, and after which part of it; none if it

@@ -11,10 +11,13 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
-use uvunwrap::{MeshInput, Options, Progress};
+use uvunwrap::{Density, MeshInput, Options, Progress};
 
-/// Marks a kept atlas: one by version 0.2 of uvunwrap. It changes when atlases are made otherwise.
-const MAGIC: [u8; 8] = *b"uvwrap02";
+/// Marks a kept atlas: one by version 0.2 of uvunwrap, with square texels. It changes when atlases are made otherwise.
+const MAGIC: [u8; 8] = *b"uvwrap2s";
+
+/// Widths, in texels, of pages that are tried one after the other until all charts fit one: each has two texels around it.
+const PAGE_SIZES: &[u32] = &[1024, 4096, 16384];
 
 /// Time that passes between two words about the work.
 const BETWEEN_WORDS: Duration = Duration::from_secs(1);
@@ -41,7 +44,7 @@ pub fn unwrap(mesh: &Mesh, folder: Option<&Path>, tell: Option<fn(&str)>) -> Res
     if let Some(unwrapped) = read {
         return Ok(unwrapped);
     }
-    let made = Unwrapped::of(mesh, tell)?;
+    let made = Unwrapped::of(mesh, PAGE_SIZES, tell)?;
     // A folder that cannot be written costs time, not the picture.
     if let Some(Err(error)) = kept.as_deref().map(|path| write(path, &made)) {
         tracing::debug!("the atlas is not kept: {error}");
@@ -50,7 +53,8 @@ pub fn unwrap(mesh: &Mesh, folder: Option<&Path>, tell: Option<fn(&str)>) -> Res
 }
 
 impl Unwrapped {
-    fn of(mesh: &Mesh, tell: Option<fn(&str)>) -> Result<Self, String> {
+    /// On the first of some pages that has room for all charts.
+    fn of(mesh: &Mesh, page_sizes: &[u32], tell: Option<fn(&str)>) -> Result<Self, String> {
         // Vertices that were split for normals or an old texture are one point of the surface.
         let points = weld(&mesh.positions_mm);
         let mut first: Vec<u32> = Vec::new();
@@ -72,10 +76,25 @@ impl Unwrapped {
             }
             true
         };
-        let input = MeshInput::new(&positions, &indices);
-        let atlas = uvunwrap::generate_with_progress(&[input], &Options::default(), on_the_way)
-            .map_err(|error| error.to_string())?;
+        let made_on = |page_size: u32| {
+            let options = Options { density: Density::Auto { page_size }, ..Options::default() };
+            uvunwrap::generate_with_progress(&[MeshInput::new(&positions, &indices)], &options, on_the_way)
+                .map_err(|error| error.to_string())
+        };
+        let mut pages = page_sizes.iter();
+        let atlas = loop {
+            let Some(&page_size) = pages.next() else {
+                return Err("its charts are too many for one texture".to_owned());
+            };
+            let atlas = made_on(page_size)?;
+            if atlas.page_count == 1 {
+                break atlas;
+            }
+        };
         let made = &atlas.meshes[0];
+        // Pages are cut off below the last chart, but texels are square.
+        let square =
+            Vec2::new(atlas.width as f32, atlas.height as f32) / atlas.width.max(atlas.height) as f32;
         // Every corner keeps what its own vertex had, so that a vertex is a pair of both.
         let mut unwrapped = Self { vertices: Vec::new(), uvs: Vec::new(), triangles: Vec::new() };
         let mut known = HashMap::new();
@@ -84,7 +103,7 @@ impl Unwrapped {
                 let (own, at) = (triangle[k], corners[k]);
                 *known.entry((own, at)).or_insert_with(|| {
                     unwrapped.vertices.push(own);
-                    unwrapped.uvs.push(Vec2::from_array(made.vertices[at as usize].uv));
+                    unwrapped.uvs.push(Vec2::from_array(made.vertices[at as usize].uv) * square);
                     unwrapped.vertices.len() as u32 - 1
                 })
             });
@@ -185,7 +204,7 @@ mod tests {
     fn a_body_without_an_atlas_gets_one() {
         let before = bare();
         let mut mesh = before.clone();
-        Unwrapped::of(&before, None).unwrap().lay(&mut mesh);
+        Unwrapped::of(&before, PAGE_SIZES, None).unwrap().lay(&mut mesh);
         assert_eq!(mesh.triangles.len(), before.triangles.len());
         for t in 0..mesh.triangles.len() {
             assert_eq!(mesh.corners_mm(t), before.corners_mm(t), "triangle {t} is where it was");
@@ -199,6 +218,36 @@ mod tests {
             })
             .sum();
         assert!(used > 0.4, "{used} of the texture is used");
+    }
+
+    /// Texels of a body that fills a small part of its page are as wide along u as along v.
+    #[test]
+    fn texels_of_a_long_strip_are_square() {
+        let corners = [Vec3::ZERO, Vec3::X * 100.0, Vec3::new(100.0, 5.0, 0.0), Vec3::Y * 5.0];
+        let mut mesh =
+            Mesh { positions_mm: corners.to_vec(), triangles: vec![[0, 1, 2], [0, 2, 3]], ..Mesh::default() };
+        Unwrapped::of(&mesh.clone(), PAGE_SIZES, None).unwrap().lay(&mut mesh);
+        for t in 0..2 {
+            let ([a, b, c], [p, q, r]) = (mesh.corner_atlas_uvs(t), mesh.corners_mm(t));
+            let [along, across] = [(b - a).length() / (q - p).length(), (c - b).length() / (r - q).length()];
+            assert!((along / across - 1.0).abs() < 0.02, "{along} {across}");
+        }
+    }
+
+    /// More charts than fit the first page, however small they were made there, lie on the next; or on none.
+    #[test]
+    fn charts_without_number_do_not_overlap() {
+        let mut mesh = Mesh::default();
+        for i in 0..400 {
+            let at = Vec3::new((i % 20) as f32, (i / 20) as f32, 0.0) * 3.0;
+            mesh.positions_mm.extend([at, at + Vec3::X, at + Vec3::Y]);
+            mesh.triangles.push([3 * i, 3 * i + 1, 3 * i + 2]);
+        }
+        let why = Unwrapped::of(&mesh, &[32, 64], None).unwrap_err();
+        assert!(why.contains("too many"), "{why}");
+        Unwrapped::of(&mesh.clone(), &[32, 64, 256], None).unwrap().lay(&mut mesh);
+        assert!(Charts::inside_unit_square(&mesh));
+        assert_eq!(Charts::overlap_fraction(&mesh, 2048), 0.0);
     }
 
     /// Where the atlas is cut a vertex becomes two, and both have all that the one had.
@@ -218,7 +267,7 @@ mod tests {
         let influences =
             places.iter().map(|p| Influence { weights: p.extend(0.0).to_array(), ..Influence::default() });
         mesh.skeleton = Some(Skeleton { influences: influences.collect(), ..Skeleton::default() });
-        Unwrapped::of(&mesh, None).unwrap().lay(&mut mesh);
+        Unwrapped::of(&mesh, PAGE_SIZES, None).unwrap().lay(&mut mesh);
         assert!(mesh.positions_mm.len() > places.len(), "somewhere it is cut");
         let (target, skeleton) = (&mesh.morph_targets[0], mesh.skeleton.as_ref().unwrap());
         for (v, &p) in mesh.positions_mm.iter().enumerate() {
@@ -237,7 +286,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("kept").join("one.atlas");
         let mesh = bare();
-        let made = Unwrapped::of(&mesh, None).unwrap();
+        let made = Unwrapped::of(&mesh, PAGE_SIZES, None).unwrap();
         write(&path, &made).unwrap();
         assert_eq!(read(&path, &mesh), Some(made));
         let bytes = std::fs::read(&path).unwrap();

@@ -1,6 +1,6 @@
 //! The surface unrolled: where every texel lies in space, which way it faces and how far it is stretched.
 //!
-//! Which triangle lies under a texel is found once, by cutis-render: it follows from the texture coordinates alone, and no
+//! Which triangle lies under a texel is found once, by cutis-render: it follows from places in the atlas alone, and no
 //! deformation moves those. So charts, padding and their edges are the same on both backends.
 
 use crate::map::Map;

@@ -1,5 +1,5 @@
 // The surface unrolled: what lies under every texel. The triangle of each is known beforehand, for no deformation moves
-// texture coordinates; where it lies now, which way it faces and how far it is stretched is found here.
+// places of the atlas; where it lies now, which way it faces and how far it is stretched is found here.
 
 @group(0) @binding(1) var<storage, read> vertices: array<Vertex>;
 @group(0) @binding(2) var<storage, read> triangles: array<Triangle>;

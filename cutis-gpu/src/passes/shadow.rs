@@ -32,7 +32,7 @@ pub struct Drawn {
 pub struct ShadowMaps {
     /// Depth away from the light, mm.
     pub depths: Map,
-    /// Texture coordinates, chart and object of the surface that faces the light.
+    /// Place in the atlas, chart and object of the surface that faces the light.
     pub surfaces: Map,
     depth_buffer: Map,
 }

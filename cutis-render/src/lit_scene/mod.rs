@@ -33,6 +33,8 @@ pub use warnings::{laid_out_anew, left_out, warnings};
 
 /// Smallest irradiance texture of an object that is much smaller than the largest.
 const MIN_ATLAS: u32 = 64;
+/// Width of a chart and its padding, texels, if all charts of an object had as much of its texture.
+const CHART_TEXELS: f64 = 8.0;
 
 /// A scene whose light has been gathered and spread, ready to be looked at from anywhere. It borrows the scene, or owns it.
 pub struct LitScene<S> {
@@ -223,8 +225,8 @@ fn wanted(progress: &dyn Progress) -> Result<(), RenderError> {
     if progress.goes_on() { Ok(()) } else { Err(RenderError::Stopped) }
 }
 
-/// Size of each object's texture: the largest object gets all of it (rounded up so that it can be halved), others by the square root of their area, in
-/// powers of two below.
+/// Size of each object's texture: the largest object gets all of it (rounded up so that it can be halved), others by the square root of
+/// their area, in powers of two below, but no less than their charts need to have texels each.
 pub fn atlas_sizes(objects: &[Object], largest: u32) -> Vec<u32> {
     let area = |object: &Object| {
         (0..object.mesh.triangles.len()).map(|t| f64::from(object.mesh.area_mm2(t))).sum::<f64>()
@@ -232,15 +234,36 @@ pub fn atlas_sizes(objects: &[Object], largest: u32) -> Vec<u32> {
     let areas: Vec<f64> = objects.iter().map(area).collect();
     let most = areas.iter().copied().fold(0.0, f64::max);
     let largest = largest.next_multiple_of(8);
-    let size = |area: &f64| {
+    let size = |(area, object): (&f64, &Object)| {
+        let least = MIN_ATLAS.max((CHART_TEXELS * f64::from(object.charts.count).sqrt()) as u32);
         let mut size = largest;
         while size.is_multiple_of(2)
-            && size / 2 >= MIN_ATLAS
+            && size / 2 >= least
             && f64::from(size / 2) >= f64::from(largest) * (area / most).sqrt()
         {
             size /= 2;
         }
         size
     };
-    areas.iter().map(size).collect()
+    areas.iter().zip(objects).map(size).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use cutis_scene::Material;
+    use cutis_scene::validation::shapes::capsule;
+    use glam::Vec3;
+
+    /// A small body has a small map, unless it lies on the texture in a thousand pieces.
+    #[test]
+    fn maps_are_as_large_as_bodies_and_their_charts_need() {
+        let body =
+            |radius_mm| Object::new("body", capsule(Vec3::ZERO, radius_mm, 0.0, 64), Material::default());
+        let (large, small) = (body(100.0), body(1.0));
+        let mut cut = small.clone();
+        cut.charts.count = 1000;
+        assert_eq!(atlas_sizes(&[large.clone(), small], 1020), [1024, 64]);
+        assert_eq!(atlas_sizes(&[large, cut], 1020), [1024, 256]);
+    }
 }

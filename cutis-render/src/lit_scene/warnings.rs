@@ -4,8 +4,12 @@ use crate::prepare::kernel::stacks;
 use crate::prepare::mixtures::media_of;
 use crate::settings::{AovSpace, Diffusion, Settings, TechniqueName};
 use cutis_optics::{Dipole, Medium, Stack};
-use cutis_scene::{Object, Scattering, Scene};
+use cutis_scene::{Mesh, Object, Scattering, Scene};
+use glam::Vec2;
 use std::collections::BTreeMap;
+
+/// What texture coordinates may miss each other by, and be the same.
+const ROUNDING: f32 = 1e-4;
 
 /// All of it, in words.
 pub fn warnings(scene: &Scene, settings: &Settings) -> Vec<String> {
@@ -59,14 +63,21 @@ pub fn left_out(
 /// Says so where layers in texture space are not laid out as a mesh's file says.
 pub fn laid_out_anew(scene: &Scene, settings: &Settings) -> impl Iterator<Item = String> {
     let asked = settings.aov_space == AovSpace::Texture && !settings.aovs.is_empty();
-    let anew = scene.objects.iter().filter(move |object| asked && object.mesh.atlas_uvs.is_some());
-    anew.map(|object| {
+    // Layers in texture space are those of the first object.
+    let anew = scene.objects.first().filter(|object| asked && is_laid_anew(&object.mesh));
+    anew.into_iter().map(|object| {
         format!(
             "layers in texture space of '{}' are laid out by the atlas that was made for its light, not by the texture \
              coordinates of its file",
             object.name
         )
     })
+}
+
+/// Whether light lies elsewhere than the file says, and not only on another tile, where textures repeat.
+fn is_laid_anew(mesh: &Mesh) -> bool {
+    let apart = |(atlas, map): (&Vec2, &Vec2)| (*atlas - *map - (*atlas - *map).round()).abs().max_element();
+    mesh.atlas_uvs.as_ref().is_some_and(|uvs| uvs.iter().zip(&mesh.uvs).any(|pair| apart(pair) > ROUNDING))
 }
 
 fn layers_left_out(object: &Object, technique: TechniqueName) -> Option<String> {
@@ -141,5 +152,12 @@ mod tests {
         };
         assert!(told(&anew, &in_texture));
         assert!(!told(&anew, &settings) && !told(&as_it_was, &in_texture));
+        let mut moved_by_tiles = as_it_was.clone();
+        let mesh = &mut moved_by_tiles.objects[0].mesh;
+        mesh.atlas_uvs = Some(mesh.uvs.clone());
+        mesh.uvs.iter_mut().for_each(|uv| *uv += Vec2::new(3.0, -2.0));
+        assert!(!told(&moved_by_tiles, &in_texture));
+        let second = Scene { objects: [as_it_was.objects, anew.objects].concat(), ..anew };
+        assert!(!told(&second, &in_texture), "layers are those of the first object");
     }
 }

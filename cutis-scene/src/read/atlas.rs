@@ -1,7 +1,7 @@
 //! Maps of light need every place of a surface once and inside the unit square. Where a mesh's texture coordinates are not
 //! like that, light gets others, while the material's maps keep theirs.
 
-use super::{AtlasChoice, ReadOptions};
+use super::{AtlasChoice, ReadOptions, Textured};
 use crate::tiles::{MAX_TILES, Tiles};
 use crate::topology::weld;
 use crate::unwrap::unwrap;
@@ -10,9 +10,11 @@ use glam::Vec2;
 
 /// Said of a mesh without texture coordinates.
 pub(super) const LACKS_UVS: &str = "the mesh has no texture coordinates";
+/// Said of one with some.
+pub(super) const LACKS_SOME_UVS: &str = "parts of the mesh have no texture coordinates";
 
 /// Part of the texture that a surface should have: below it, maps of light have no texels for it.
-const LEAST_USED_FRACTION: f32 = 0.02;
+const LEAST_USED_FRACTION: f64 = 0.02;
 
 /// Grid on which overlap is counted: fine enough for half a percent of a used texture.
 const OVERLAP_GRID: u32 = 512;
@@ -24,26 +26,33 @@ const MAX_OVERLAP_FRACTION: f32 = 0.005;
 /// stay near 3; far above it, counting would take forever and the answer is known.
 const MAX_BOX_SUM: f32 = 64.0;
 
-/// Part of the surface that may have no area in the texture: a mouth's inside, say, that nobody sees.
+/// Part of the surface that may have next to no area in the texture: a mouth's inside, say, that nobody sees.
 const MAX_BARE_FRACTION: f32 = 0.01;
+/// Area in the texture, by that on the surface and the mean of both, that is next to none: texels are a hundred times as wide.
+const BARE: f64 = 1e-4;
 
-/// Gives a mesh an atlas for light if that was chosen, or if its texture coordinates, which it has unless `lacks_uvs`, cannot be
-/// one; tells what was done that nobody asked for.
+/// Gives a mesh an atlas for light if that was chosen, or if its texture coordinates, as far as it has them, cannot be one; tells what
+/// was done that nobody asked for.
 ///
 /// # Errors
 /// In words, if no atlas can be made where one is asked for or there are no texture coordinates.
 pub(super) fn give_atlas(
     mesh: &mut Mesh,
-    lacks_uvs: bool,
+    textured: Textured,
     choice: AtlasChoice,
     options: &ReadOptions,
 ) -> Result<Option<String>, String> {
     let is_asked = choice == AtlasChoice::New;
-    let trouble = if lacks_uvs { Some(LACKS_UVS.to_owned()) } else { trouble_of(mesh) };
+    let lacks_uvs = textured == Textured::Not;
+    let trouble = match textured {
+        Textured::Not => Some(LACKS_UVS.to_owned()),
+        Textured::Partly => Some(LACKS_SOME_UVS.to_owned()),
+        Textured::Whole => trouble_of(mesh),
+    };
     let Some(trouble) = trouble.or(is_asked.then(|| "a new atlas is asked for".to_owned())) else {
         return Ok(None);
     };
-    if !lacks_uvs
+    if textured == Textured::Whole
         && !is_asked
         && let Some(words) = gather(mesh)
     {
@@ -95,7 +104,7 @@ fn trouble_of(mesh: &Mesh) -> Option<String> {
     }
     let bare = bare_fraction(mesh);
     if bare > MAX_BARE_FRACTION {
-        return Some(format!("{:.1} % of the surface has no area in the texture", 100.0 * bare));
+        return Some(format!("{:.1} % of the surface has next to no area in the texture", 100.0 * bare));
     }
     let used = used_fraction(mesh);
     if used < LEAST_USED_FRACTION {
@@ -110,25 +119,24 @@ fn trouble_of(mesh: &Mesh) -> Option<String> {
     })
 }
 
-/// Part of the surface, by area, whose triangles have none in the texture.
+/// Part of the surface, by area, whose triangles have next to none in the texture.
 fn bare_fraction(mesh: &Mesh) -> f32 {
-    let area_mm2 = |t: &usize| f64::from(mesh.area_mm2(*t));
-    let is_bare = |t: &usize| {
-        let [a, b, c] = mesh.corner_atlas_uvs(*t);
-        (b - a).perp_dot(c - a) == 0.0
-    };
+    let area_mm2 = |t: usize| f64::from(mesh.area_mm2(t));
     let all = 0..mesh.triangles.len();
-    let whole: f64 = all.clone().map(|t| area_mm2(&t)).sum();
-    (all.filter(is_bare).map(|t| area_mm2(&t)).sum::<f64>() / whole) as f32
+    let whole_mm2: f64 = all.clone().map(area_mm2).sum();
+    let least_per_mm2 = BARE * used_fraction(mesh) / whole_mm2;
+    let bare = all.filter(|&t| area_in_texture(mesh, t) <= least_per_mm2 * area_mm2(t));
+    (bare.map(area_mm2).sum::<f64>() / whole_mm2) as f32
 }
 
 /// Area of all triangles in the texture.
-fn used_fraction(mesh: &Mesh) -> f32 {
-    let area = |t: usize| {
-        let [a, b, c] = mesh.corner_atlas_uvs(t);
-        0.5 * f64::from((b - a).perp_dot(c - a).abs())
-    };
-    (0..mesh.triangles.len()).map(area).sum::<f64>() as f32
+fn used_fraction(mesh: &Mesh) -> f64 {
+    (0..mesh.triangles.len()).map(|t| area_in_texture(mesh, t)).sum()
+}
+
+fn area_in_texture(mesh: &Mesh, triangle: usize) -> f64 {
+    let [a, b, c] = mesh.corner_atlas_uvs(triangle).map(|uv| uv.as_dvec2());
+    0.5 * (b - a).perp_dot(c - a).abs()
 }
 
 /// Sum of the areas of the triangles' boxes inside the unit square.
@@ -162,7 +170,7 @@ mod tests {
 
     fn given(shifts: &[[f32; 2]]) -> (Mesh, Option<String>) {
         let mut mesh = triangles(shifts);
-        let words = give_atlas(&mut mesh, false, AtlasChoice::Own, &ReadOptions::default())
+        let words = give_atlas(&mut mesh, Textured::Whole, AtlasChoice::Own, &ReadOptions::default())
             .expect("it has coordinates");
         (mesh, words)
     }
@@ -206,11 +214,23 @@ mod tests {
     fn a_surface_without_a_place_in_the_texture_is_told() {
         let mut mesh = triangles(&[[0.0, 0.0], [0.5, 0.5]]);
         mesh.uvs[3..].fill(Vec2::ONE);
-        let words = give_atlas(&mut mesh, false, AtlasChoice::Own, &ReadOptions::default())
+        let words = give_atlas(&mut mesh, Textured::Whole, AtlasChoice::Own, &ReadOptions::default())
             .expect("it has coordinates");
         assert!(
-            words.expect("told").starts_with("50.0 % of the surface has no area in the texture; an atlas")
+            words
+                .expect("told")
+                .starts_with("50.0 % of the surface has next to no area in the texture; an atlas")
         );
+        assert_eq!(trouble_of(&mesh), None);
+    }
+
+    /// An island of a thousandth of the size that it should have is as good as none.
+    #[test]
+    fn a_surface_with_next_to_no_place_in_the_texture_is_told() {
+        let mut mesh = triangles(&[[0.0, 0.0], [0.5, 0.5]]);
+        mesh.uvs[3..].iter_mut().for_each(|uv| *uv = 0.9 + 1e-3 * *uv);
+        let words = give_atlas(&mut mesh, Textured::Whole, AtlasChoice::Own, &ReadOptions::default());
+        assert!(words.expect("it has coordinates").expect("told").starts_with("50.0 % of the surface"));
         assert_eq!(trouble_of(&mesh), None);
     }
 
@@ -218,7 +238,7 @@ mod tests {
     fn a_surface_with_hardly_any_of_the_texture_is_told() {
         let mut mesh = triangles(&[[0.0, 0.0], [0.5, 0.5]]);
         mesh.uvs.iter_mut().for_each(|uv| *uv = *uv * 0.05 + 0.2);
-        let words = give_atlas(&mut mesh, false, AtlasChoice::Own, &ReadOptions::default());
+        let words = give_atlas(&mut mesh, Textured::Whole, AtlasChoice::Own, &ReadOptions::default());
         let words = words.expect("it has coordinates").expect("told");
         assert!(words.starts_with("the surface has only 0.06 % of the texture; an atlas"), "{words}");
         assert_eq!(trouble_of(&mesh), None);

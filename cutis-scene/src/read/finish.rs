@@ -1,12 +1,12 @@
 //! From the parts a file gave to a whole scene: checks, overrides, camera and, where there is none, light.
 
-use super::atlas::{LACKS_UVS, give_atlas};
+use super::atlas::{LACKS_SOME_UVS, LACKS_UVS, give_atlas};
 use super::checks::{MAX_COUNT, check_mesh};
 use super::file::resolve_for_user;
 use super::image::ColourSpace;
 use super::scene_file::PoseKeys;
 use super::textures::Textures;
-use super::{AtlasChoice, CameraChoice, Parts, Piece, ReadOptions};
+use super::{AtlasChoice, CameraChoice, Parts, Piece, ReadOptions, Textured};
 use crate::error::one_line;
 use crate::scene::bounds_mm;
 use crate::studio::{STUDIO_BACKGROUND, studio_environment, studio_lights};
@@ -64,14 +64,20 @@ fn to_object(
     (options, atlas): (&ReadOptions, AtlasChoice),
     warnings: &mut Vec<String>,
 ) -> Result<Object, SceneError> {
-    let Piece { name, place, mut mesh, lacks_uvs, material, .. } = piece;
+    let Piece { name, place, mut mesh, textured, material, .. } = piece;
     let fail = |reason: String| SceneError::new(file, place.as_str(), reason);
     check_mesh(&mut mesh, file, &place, warnings)?;
-    if lacks_uvs && material.has_maps() {
-        let what_to_do = "unwrap it in a modelling program, or leave the maps out and an atlas is made";
-        return Err(fail(format!("{LACKS_UVS}, which its maps need: {what_to_do}")));
+    match textured {
+        Textured::Not if material.has_maps() => {
+            let what_to_do = "unwrap it in a modelling program, or leave the maps out and an atlas is made";
+            return Err(fail(format!("{LACKS_UVS}, which its maps need: {what_to_do}")));
+        }
+        Textured::Partly if material.has_maps() => {
+            warnings.push(format!("{place}: {LACKS_SOME_UVS}: its maps show one colour there"));
+        }
+        _ => {}
     }
-    match give_atlas(&mut mesh, lacks_uvs, atlas, options) {
+    match give_atlas(&mut mesh, textured, atlas, options) {
         Ok(Some(words)) => warnings.push(format!("{place}: {words}")),
         Ok(None) => {}
         Err(why) => return Err(fail(why)),

@@ -113,14 +113,32 @@ enum CameraChoice {
     Partial(scene_file::CameraKeys),
 }
 
+/// How much of a mesh has texture coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Textured {
+    Whole,
+    Partly,
+    Not,
+}
+
+impl Textured {
+    fn new(some_have: bool, some_lack: bool) -> Self {
+        match (some_have, some_lack) {
+            (_, false) => Self::Whole,
+            (true, true) => Self::Partly,
+            (false, true) => Self::Not,
+        }
+    }
+}
+
 /// One mesh with its material, on its way to become an object.
 struct Piece {
     name: String,
     /// Where in the file it stands, for messages.
     place: String,
     mesh: Mesh,
-    /// Whether the file has no texture coordinates for it.
-    lacks_uvs: bool,
+    /// What of it has texture coordinates in the file; the rest lies at the corner of the texture.
+    textured: Textured,
     /// What it is made of in the end.
     material: Material,
     /// What it is made of by its own file.

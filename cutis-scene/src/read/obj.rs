@@ -6,7 +6,7 @@
 //! The format has no unit. Without `millimetres_per_unit` the mesh is taken for a head.
 
 use super::checks::MAX_COUNT;
-use super::{Parts, Piece, ReadOptions};
+use super::{Parts, Piece, ReadOptions, Textured};
 use crate::{Material, Mesh, SceneError};
 use glam::{Vec2, Vec3};
 use std::collections::HashMap;
@@ -74,6 +74,8 @@ struct Group {
     vertex_of_corner: HashMap<Corner, u32>,
     /// Whether a corner has a texture coordinate; those that have none lie at the corner of the texture.
     has_uvs: bool,
+    /// Whether one has none.
+    lacks_uvs: bool,
 }
 
 struct Parser<'a> {
@@ -239,8 +241,9 @@ impl<'a> Parser<'a> {
     }
 
     fn vertex(&mut self, corner: Corner) -> u32 {
-        let Group { mesh, vertex_of_corner, has_uvs, .. } = &mut self.groups[self.current];
+        let Group { mesh, vertex_of_corner, has_uvs, lacks_uvs, .. } = &mut self.groups[self.current];
         *has_uvs |= corner.1.is_some();
+        *lacks_uvs |= corner.1.is_none();
         *vertex_of_corner.entry(corner).or_insert_with(|| {
             let (position, uv, normal) = corner;
             mesh.positions_mm.push(self.positions[position as usize]);
@@ -267,7 +270,7 @@ impl<'a> Parser<'a> {
         let complete = self.corners_without_normal == 0;
         let used = self.groups.into_iter().filter(|group| !group.mesh.triangles.is_empty());
         Ok(used
-            .map(|Group { name, mut mesh, has_uvs, .. }| {
+            .map(|Group { name, mut mesh, has_uvs, lacks_uvs, .. }| {
                 if !complete {
                     mesh.normals.clear();
                 }
@@ -276,7 +279,7 @@ impl<'a> Parser<'a> {
                     place: format!("object `{name}`"),
                     name,
                     mesh,
-                    lacks_uvs: !has_uvs,
+                    textured: Textured::new(has_uvs, lacks_uvs),
                     material: Material::default(),
                     own_material: Material::default(),
                 }

@@ -5,7 +5,7 @@
 
 use super::metric::{Metric, conductivity};
 use super::shore::{Read, Shore, centre};
-use crate::passes::atlas::barycentric;
+use crate::passes::atlas::{barycentric, inside};
 use cutis_scene::Object;
 use glam::{Mat4, Vec2, Vec4};
 use rayon::prelude::*;
@@ -210,12 +210,6 @@ fn summed_up(object: &Object, mut cell: Cell, size: usize) -> Cell {
         cell.pieces.iter().map(of).sum::<f32>() / cell.part_of_square
     };
     cell
-}
-
-/// Weights of corners of which none is outside; of a triangle without an area, which has none, the first corner's.
-fn inside(weights: [f32; 2]) -> [f32; 2] {
-    let [b1, b2] = weights.map(|b| if b.is_finite() { b.clamp(0.0, 1.0) } else { 0.0 });
-    [b1, b2.min(1.0 - b1)]
 }
 
 /// What a triangle has of squares that may be cut.

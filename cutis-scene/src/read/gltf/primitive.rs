@@ -4,9 +4,9 @@ use super::accessor::Accept;
 use super::skeleton::{self, Bones};
 use super::skin::{self, JointMatrices, Skinned};
 use super::{Document, material};
-use crate::read::Piece;
 use crate::read::checks::MAX_COUNT;
 use crate::read::textures::Textures;
+use crate::read::{Piece, Textured};
 use crate::skeleton::normal_matrix;
 use crate::{Influence, Joint, Mesh, MorphTarget, SceneError};
 use glam::{Mat3, Mat4, Vec2, Vec3, Vec4};
@@ -36,6 +36,8 @@ struct Gathered {
     lacks_tangents: bool,
     /// Whether one came with texture coordinates.
     has_uvs: bool,
+    /// Whether one came without.
+    lacks_uvs: bool,
     /// Morph targets that some primitive gives without offsets of normals.
     lacks_normal_offsets: BTreeSet<usize>,
     /// Number of the first joint of each skin.
@@ -146,11 +148,11 @@ impl Gathering {
                 gathered.mesh.tangents.clear();
             }
             let material = material::read(document, key, textures, warnings)?;
-            let Gathered { name, place, mut mesh, has_uvs, .. } = gathered;
+            let Gathered { name, place, mut mesh, has_uvs, lacks_uvs, .. } = gathered;
             material.uv_transform.apply(&mut mesh);
             let material = material.material;
-            let lacks_uvs = !has_uvs;
-            pieces.push(Piece { name, place, mesh, lacks_uvs, own_material: material.clone(), material });
+            let textured = Textured::new(has_uvs, lacks_uvs);
+            pieces.push(Piece { name, place, mesh, textured, own_material: material.clone(), material });
         }
         Ok(pieces)
     }
@@ -272,6 +274,7 @@ impl Reading<'_> {
         );
         let has_uvs = self.append_uvs(mesh, count)?;
         gathered.has_uvs |= has_uvs;
+        gathered.lacks_uvs |= !has_uvs;
         let normals = self.floats::<3>(Semantic::Normals, "NORMAL", Accept::Float)?;
         gathered.lacks_normals |= normals.is_none();
         let normals = self.one_per_vertex(normals, count, [0.0; 3], "NORMAL")?;

@@ -9,7 +9,7 @@ mod pose;
 
 use super::file::{Folder, read_bytes};
 use super::textures::Textures;
-use super::{AtlasChoice, CameraChoice, Parts, Piece, ReadOptions, read_mesh_file};
+use super::{AtlasChoice, CameraChoice, Parts, Piece, ReadOptions, Textured, read_mesh_file};
 use crate::head::{HeadDetail, built_in};
 use crate::{MeshOrigin, SceneError};
 use keys::{Keys, Source};
@@ -171,7 +171,7 @@ fn built_in_head(detail: HeadDetail) -> Parts {
         name: head.name,
         place: "built-in head".to_owned(),
         mesh: head.mesh,
-        lacks_uvs: false,
+        textured: Textured::Whole,
         own_material: head.material.clone(),
         material: head.material,
     };

@@ -108,7 +108,7 @@ pub(super) fn areas_mm2(object: &Object, size: usize) -> Vec<f64> {
     areas
 }
 
-/// The texel at texture coordinates, which repeat.
+/// The texel at a place of the atlas; beyond it, it repeats.
 fn texel_of(uv: Vec2, size: usize) -> usize {
     let place = |share: f32| ((share.rem_euclid(1.0) * size as f32) as usize).min(size - 1);
     place(uv.y) * size + place(uv.x)

@@ -12,7 +12,10 @@ use cutis_scene::unwrap::unwrap;
 use cutis_scene::validation::shapes;
 use cutis_scene::{Material, Object, ScalarMap, Texels, Texture};
 use glam::{Mat2, Vec2, Vec3};
-use sheets::{Lit, QUADS, bent, flown, in_four, in_pieces, noise, plane, slanted, tube, upright, whole};
+use sheets::{
+    Lit, QUADS, bent, flown, in_four, in_pieces, noise, plane, slanted, squeezed, squeezed_and_turned, tube,
+    upright, whole,
+};
 use std::sync::Arc;
 
 /// Worst error of a bump of 1.5 mm² beside the crossing of the cuts that widens by a variance, by the peak.
@@ -44,6 +47,18 @@ fn a_bump_on_a_plane_widens_whatever_the_layout() {
             let worst = widened(object, 512, variance_mm2);
             eprintln!("{name}, {variance_mm2} mm²: {worst:.4} of the peak");
             assert!(worst < 0.01, "{name}, {variance_mm2}: {worst}");
+        }
+    }
+}
+
+/// Slivers an eighth as wide as what is beside them are no barrier, whatever their direction.
+#[test]
+fn heat_crosses_slivers() {
+    for (name, object) in [("upright", plane(squeezed)), ("turned", plane(squeezed_and_turned))] {
+        for variance_mm2 in [1.2, 6.0, 24.0] {
+            let worst = widened(&object, 512, variance_mm2);
+            eprintln!("{name}, {variance_mm2} mm²: {worst:.4} of the peak");
+            assert!(worst < 0.06, "{name}, {variance_mm2}: {worst}");
         }
     }
 }

@@ -92,7 +92,12 @@ fn of_jump(jump: &Jump, part: f32) -> Element {
 }
 
 impl Element {
-    fn add(&mut self, i: u32, j: u32, strength: f32) {
+    /// Adds to the link between two texels; none to itself.
+    pub fn add(&mut self, one: u32, other: u32, strength: f32) {
+        let (i, j) = (one.min(other), one.max(other));
+        if i == j {
+            return;
+        }
         match self.links.iter_mut().find(|(a, b, _)| (*a, *b) == (i, j)) {
             Some((_, _, sum)) => *sum += strength,
             None => self.links.push((i, j, strength)),

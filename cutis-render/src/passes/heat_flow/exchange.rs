@@ -13,6 +13,7 @@ use super::pattern::Pattern;
 use super::rows::Rows;
 use super::shore::{Read, Shore};
 use super::squares::Squares;
+use super::strides::{Stride, narrow, strides};
 use crate::passes::atlas::Atlas;
 use cutis_scene::Object;
 use rayon::prelude::*;
@@ -43,6 +44,10 @@ pub struct Layout {
     pub cells: Vec<Cell>,
     /// Places along seams.
     pub gaps: Vec<Gap>,
+    /// Triangles whose texels are narrow in the pose that the layout was made in, …
+    narrow: Vec<bool>,
+    /// … and the longer steps across them.
+    pub strides: Vec<Stride>,
     /// Texels of the padding, and what they hold.
     pub padding: Vec<(u32, Read)>,
     /// The best that heat flows anywhere, by how it does in the medium itself.
@@ -73,8 +78,8 @@ pub struct Exchange {
 }
 
 impl Layout {
-    /// Of an object and its atlas.
-    pub fn new(object: &Object, shore: &Shore) -> Self {
+    /// Of an object and its atlas, whose texels are usually `texel_mm` wide.
+    pub fn new(object: &Object, shore: &Shore, texel_mm: f32) -> Self {
         let size = shore.size();
         let whole: Vec<bool> = (0..size * size)
             .into_par_iter()
@@ -82,10 +87,22 @@ impl Layout {
             .collect();
         let (cells, padding) = rayon::join(|| Cells::new(object, shore), || padding(object, shore));
         let gaps = gaps(shore, &cells, &whole);
+        let narrow = narrow(object, size, texel_mm);
+        let strides = strides(object, shore, &narrow, texel_mm);
         let cells = cells.all;
         let best_conductivity =
             cells.iter().map(Cell::conductivity).fold(best_conductivity(object, shore.atlas), f32::max);
-        Self { size, whole, cells, gaps, padding, best_conductivity, pattern: OnceLock::new() }
+        Self {
+            size,
+            whole,
+            cells,
+            gaps,
+            narrow,
+            strides,
+            padding,
+            best_conductivity,
+            pattern: OnceLock::new(),
+        }
     }
 }
 
@@ -99,7 +116,7 @@ impl Exchange {
         texel_mm: f32,
     ) -> Self {
         let size = layout.size;
-        let metrics = metrics(object, size, texel_mm);
+        let metrics = metrics(object, size, &layout.narrow, texel_mm);
         let mut squares = Squares::new(size, &layout.whole, &metrics_of_texels(object, atlas, &metrics));
         let mut own_mm2 = squares.areas_mm2();
         let cells = CutCells::new(&layout.cells, &metrics, &mut own_mm2);
@@ -116,7 +133,9 @@ impl Exchange {
         if halving.is_some() {
             squares.slow_down(&areas_mm2, limit_per_mm2);
         }
-        let elements = elements(object, layout, &metrics, &squares, &cells);
+        let mut elements = elements(object, layout, &metrics, &squares, &cells);
+        let across = |stride: &Stride| stride.element(object, size, texel_mm, &areas_mm2);
+        elements.par_extend(layout.strides.par_iter().map(across));
         let strengths = squares.strengths();
         let pattern = layout.pattern.get_or_init(|| Pattern::new(&elements, size * size));
         let mut rows = pattern.filled(&elements, |_| 1.0, |strength| strength);

@@ -89,7 +89,7 @@ fn side(witnesses: &Witnesses, (triangle, corner): (u32, u8), at: Vec2, part: f3
 }
 
 impl Gap {
-    /// By texels, for the pose of the mesh, with the slopes of all cells; nothing is linked where a side has no extent.
+    /// By texels, for the pose of the mesh, with the slopes of witnesses; nothing is linked where a side has no extent.
     pub fn jump(
         &self,
         object: &Object,

@@ -12,6 +12,8 @@ use rayon::prelude::*;
 /// Heat crosses texels narrower than this part of the usual one as if they were that wide: slivers would set the pace for all
 /// others. Their areas, and what flows along them, are true.
 pub const SMALLEST: f32 = 0.63;
+/// Part of that pace which is left to texels with longer steps ([`super::strides`]).
+const BESIDE_STRIDES: f32 = 0.5;
 
 /// The metric under one texel.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -28,14 +30,37 @@ impl Metric {
         Self { a: self.a * factor, ..self }
     }
 
-    /// From the derivatives along both axes, mm per texel; `texel_mm` is the usual size of a texel.
-    pub fn new([xu, xv]: [Vec3; 2], texel_mm: f32) -> Self {
+    /// From the derivatives along both axes, mm per texel.
+    pub fn new([xu, xv]: [Vec3; 2]) -> Self {
         let (e, f, g) = (xu.length_squared(), xu.dot(xv), xv.length_squared());
         let area_mm2 = (e * g - f * f).max(0.0).sqrt();
         // Without an area nothing can be said, and nothing flows.
         let per_area = if area_mm2 > 0.0 { area_mm2.recip() } else { 0.0 };
-        let a = at_most(Vec3::new(g, -f, e) * per_area, area_mm2 / (SMALLEST * texel_mm).powi(2));
+        let a = Vec3::new(g, -f, e) * per_area;
         if a.is_finite() && area_mm2.is_finite() { Self { a, area_mm2 } } else { Self::default() }
+    }
+
+    /// What may flow from texel to texel, where the usual one is `texel_mm` wide: with longer steps beside it half as much.
+    pub fn cut(self, has_strides: bool, texel_mm: f32) -> Self {
+        let part = if has_strides { BESIDE_STRIDES } else { 1.0 };
+        Self { a: at_most(self.a, part * self.area_mm2 / (SMALLEST * texel_mm).powi(2)), ..self }
+    }
+
+    /// The shortest way across a texel, mm; 0 where there is none.
+    pub fn narrowest_mm(&self) -> f32 {
+        (self.area_mm2 / largest(self.a).max(f32::MIN_POSITIVE)).sqrt()
+    }
+
+    /// The direction in the texture in which that is.
+    pub fn narrow_direction(&self) -> Vec2 {
+        let Vec3 { x, y, z } = self.a;
+        let low = x + z - largest(self.a);
+        // Both columns of what is left without the smaller eigenvalue; the longer one is less of a rounding.
+        let (one, other) = (Vec2::new(x - low, y), Vec2::new(y, z - low));
+        let longer = if one.length_squared() > other.length_squared() { one } else { other };
+        // Towards growing u, so that neighbours agree.
+        let towards = if longer.x < 0.0 { -longer } else { longer };
+        towards.try_normalize().unwrap_or(Vec2::X)
     }
 
     /// The most energy that light on the four corners of a square has, by the sum of its squares. Slopes have that of a; the wave
@@ -63,9 +88,11 @@ fn at_most(a: Vec3, most: f32) -> Vec3 {
     Vec3::new(low, 0.0, low) + along * (most - low)
 }
 
-/// The metric of every triangle; nothing for those that have no area in the texture.
-pub fn metrics(object: &Object, size: usize, texel_mm: f32) -> Vec<Metric> {
-    let of = |t: usize| derivatives_mm_per_texel(object, t, size).map(|x| Metric::new(x, texel_mm));
+/// The metric of every triangle as far as heat flows by it from texel to texel; those that are `narrow` have longer steps, too.
+/// Nothing for those that have no area in the texture.
+pub fn metrics(object: &Object, size: usize, narrow: &[bool], texel_mm: f32) -> Vec<Metric> {
+    let of =
+        |t: usize| derivatives_mm_per_texel(object, t, size).map(|x| Metric::new(x).cut(narrow[t], texel_mm));
     (0..object.mesh.triangles.len()).into_par_iter().map(|t| of(t).unwrap_or_default()).collect()
 }
 
@@ -132,7 +159,10 @@ mod tests {
             // One millimetre along, a tenth of that across.
             let x = [along.x, along.y].map(|part| Vec3::new(part, 0.0, 0.0));
             let y = [across.x, across.y].map(|part| Vec3::new(0.0, 0.1 * part, 0.0));
-            let Metric { a, area_mm2 } = Metric::new([x[0] + y[0], x[1] + y[1]], 1.0);
+            let metric = Metric::new([x[0] + y[0], x[1] + y[1]]);
+            assert!((metric.narrowest_mm() - 0.1).abs() < 1e-5, "{turn}: {metric:?}");
+            assert!(metric.narrow_direction().dot(across).abs() > 1.0 - 1e-5, "{turn}: {metric:?}");
+            let Metric { a, area_mm2 } = metric.cut(false, 1.0);
             let flow = |d: Vec2| a.x * d.x * d.x + 2.0 * a.y * d.x * d.y + a.z * d.y * d.y;
             assert!((area_mm2 - 0.1).abs() < 1e-5, "{turn}: {area_mm2}");
             assert!((flow(along) - 0.1).abs() < 1e-4, "{turn}: {a}");
@@ -149,7 +179,7 @@ mod tests {
             let apart = 10f32.powf(-6.0 + 0.004 * turn as f32);
             let xu = Vec3::new(along.x, along.y, 0.3) * 100.0;
             let xv = xu * 1.3 + Vec3::new(-along.y, along.x, 0.0) * apart;
-            let metric = Metric::new([xu, xv], 6.7);
+            let metric = Metric::new([xu, xv]).cut(false, 6.7);
             let most = metric.area_mm2 / (SMALLEST * 6.7).powi(2);
             assert!(metric.strength() <= 1.001 * most, "{apart}: {metric:?} {most}");
         }

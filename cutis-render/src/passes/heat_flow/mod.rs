@@ -23,6 +23,7 @@ mod seam_edges;
 pub mod shore;
 mod squares;
 mod stencil;
+mod strides;
 mod sweep;
 mod walk;
 mod witness;
@@ -188,7 +189,7 @@ impl Level {
         (texel_mm, usual_conductivity): (f32, f32),
     ) -> Self {
         let shore = Shore::new(object, &atlas);
-        let layout = Layout::new(object, &shore);
+        let layout = Layout::new(object, &shore, texel_mm);
         let halving =
             finer.map(|finer| Halving::new(&finer.atlas, &finer.exchange.areas_mm2, &shore, &layout));
         let exchange = Exchange::new(object, &atlas, &layout, halving.as_ref(), texel_mm);

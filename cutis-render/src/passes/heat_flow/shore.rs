@@ -1,6 +1,6 @@
 //! The edges of charts: which texels hold light of their own, and what lies beside them, across seams.
 
-use super::walk::{Arrival, Ground};
+use super::walk::{Arrival, Ground, ON_THE_EDGE_TEXELS};
 use crate::passes::atlas::{Atlas, NO_CHART, charts_that_hold_light};
 use cutis_scene::Object;
 use glam::{IVec2, Vec2};
@@ -8,8 +8,6 @@ use rayon::prelude::*;
 
 /// Texels around an edge of a chart that have to do with it: more than the diagonal of a texel.
 const NEAR_TEXELS: f32 = 1.5;
-/// Distance, in texels, by which a texel's centre may miss its place on the surface: padding is farther off.
-const CENTRED_TEXELS: f32 = 2e-3;
 /// Times that a read goes back and forth over a seam, …
 const DEPTH: usize = 12;
 /// … while this weight is left.
@@ -58,7 +56,7 @@ impl<'a> Shore<'a> {
         let is_own = |i: usize| {
             // A halved map of charts may have given the texel to another one.
             let uv = atlas.atlas_uv_under(object, i).filter(|_| is_of_its_chart(object, atlas, i));
-            uv.is_some_and(|uv| (uv * size as f32 - centre(i, size)).length() < CENTRED_TEXELS)
+            uv.is_some_and(|uv| (uv * size as f32 - centre(i, size)).length() < ON_THE_EDGE_TEXELS)
         };
         let own: Vec<bool> = (0..size * size).into_par_iter().map(is_own).collect();
         // Light ends at the edges of the others: a step to a texel's centre would lead far beyond them.

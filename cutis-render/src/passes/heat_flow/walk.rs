@@ -9,8 +9,9 @@ use glam::{Vec2, Vec3};
 const CROSSINGS: usize = 256;
 /// Beyond an edge by this, in barycentric weights, is rounding.
 const ROUNDING: f32 = 1e-5;
-/// What ends so little beyond a seam, or a border, ends on it: centres of texels that lie on the surface may miss it by as much.
-const ON_THE_EDGE_TEXELS: f32 = 3e-3;
+/// What ends so little beyond a seam, or a border, ends on it: centres of texels that lie on the surface may miss it by as much, those of
+/// the padding are farther off.
+pub const ON_THE_EDGE_TEXELS: f32 = 3e-3;
 
 /// A mesh that can be walked on.
 pub struct Ground<'a> {

@@ -1,0 +1,151 @@
+//! Across slivers heat takes longer steps.
+//!
+//! From one narrow texel to the next heat may flow no faster than between usual ones, or they would set the pace for all: what is
+//! more is held back ([`Metric::cut`]). A step over several of them has the same slopes and a smaller rate, by the square of its
+//! length. So what is held back flows from every narrow texel to a place about as far away as usual texels are from each other, in
+//! the direction in which texels are narrow, across seams, too.
+
+use super::elements::Element;
+use super::metric::{Metric, SMALLEST, conductivity, derivatives_mm_per_texel};
+use super::shore::{Read, Shore, centre};
+use super::walk::Arrival;
+use crate::passes::atlas::{TexelSurface, barycentric, inside};
+use cutis_scene::Object;
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+
+/// Texels narrower than this part of the usual one take longer steps, …
+const NARROW: f32 = 0.3;
+/// … by so many usual ones …
+const STRIDE: f32 = 1.2;
+/// … or this many times that, where texels differ, …
+const ABOUT: std::ops::Range<f32> = 0.75..1.5;
+/// … found within so many tries.
+const TRIES: usize = 6;
+/// Most texels of a step.
+const MOST_TEXELS: f32 = 128.0;
+/// Part of the fastest rate that steps may take: each links its texel, and is read by others. The other half is for what flows
+/// from texel to texel.
+const BUDGET: f32 = 0.4;
+
+/// A longer step.
+#[derive(Debug, Clone)]
+pub struct Stride {
+    texel: u32,
+    from: TexelSurface,
+    to: TexelSurface,
+    /// What is read there.
+    read: Read,
+    /// How much better heat flows here than by the medium.
+    conductivity: f32,
+}
+
+/// Whether a triangle's texels are narrow in the pose of the object, for all triangles.
+pub fn narrow(object: &Object, size: usize, texel_mm: f32) -> Vec<bool> {
+    let is_narrow = |t: usize| {
+        let metric = derivatives_mm_per_texel(object, t, size).map(Metric::new);
+        metric.is_some_and(|metric| metric.narrowest_mm() < NARROW * texel_mm)
+    };
+    (0..object.mesh.triangles.len()).into_par_iter().map(is_narrow).collect()
+}
+
+/// Steps ahead from all texels on narrow triangles, and back where none comes from there, so that everywhere as many lead over every
+/// line across.
+pub fn strides(object: &Object, shore: &Shore, narrow: &[bool], texel_mm: f32) -> Vec<Stride> {
+    let is_narrow = |i: &usize| shore.own[*i] && narrow[shore.atlas.surface[*i].triangle as usize];
+    let from = |i: usize| {
+        let triangle = shore.atlas.surface[i].triangle;
+        let across = across(object, triangle, shore.size(), texel_mm);
+        let stride = |step: Vec2| stride(object, shore, i, step, texel_mm);
+        let comes = |back: &Stride| {
+            let other = back.to.triangle;
+            narrow[other as usize] && {
+                across
+                    .zip(self::across(object, other, shore.size(), texel_mm))
+                    .is_some_and(|(a, b)| a.1.dot(b.1) > 0.0)
+            }
+        };
+        let [ahead, back] = [1.0, -1.0].map(|sign| across.and_then(|(step, _)| stride(sign * step)));
+        ahead.into_iter().chain(back.filter(|back| !comes(back)))
+    };
+    (0..shore.own.len()).into_par_iter().filter(is_narrow).flat_map_iter(from).collect()
+}
+
+/// A step across the narrow texels of a triangle, in texels, and where that leads, in mm.
+fn across(object: &Object, triangle: u32, size: usize, texel_mm: f32) -> Option<(Vec2, Vec3)> {
+    let [xu, xv] = derivatives_mm_per_texel(object, triangle as usize, size)?;
+    let metric = Metric::new([xu, xv]);
+    let texels = (STRIDE * texel_mm / metric.narrowest_mm()).min(MOST_TEXELS);
+    let step = metric.narrow_direction() * texels;
+    Some((step, xu * step.x + xv * step.y))
+}
+
+/// A step from a texel, made longer or shorter until it is about as long as it should be; none beyond open borders.
+fn stride(object: &Object, shore: &Shore, texel: usize, step: Vec2, texel_mm: f32) -> Option<Stride> {
+    let size = shore.size();
+    let from = shore.atlas.surface[texel];
+    let (mut part, mut too_short, mut too_long) = (1.0, 0.0, f32::INFINITY);
+    let mut best: Option<(f32, Arrival, TexelSurface)> = None;
+    for _ in 0..TRIES {
+        let on_grid = onto_the_grid(step * part);
+        let arrival = shore.ground.walk(from.triangle, centre(texel, size), on_grid);
+        let corners = object.mesh.corner_atlas_uvs(arrival.triangle as usize);
+        let [b1, b2] = inside(barycentric(corners, arrival.place / size as f32));
+        let to = TexelSurface { triangle: arrival.triangle, b1, b2 };
+        let length = place_mm(object, from).distance(place_mm(object, to)) / (STRIDE * texel_mm);
+        let off = length.max(f32::MIN_POSITIVE).ln().abs();
+        if !arrival.at_border && best.is_none_or(|(least, ..)| off < least) {
+            best = Some((off, arrival, to));
+        }
+        if ABOUT.contains(&length) {
+            break;
+        }
+        if length < ABOUT.start && !arrival.at_border {
+            too_short = part
+        } else {
+            too_long = part
+        }
+        part =
+            if too_long.is_finite() { 0.5 * (too_short + too_long) } else { (part / length).min(3.0 * part) };
+    }
+    let (_, arrival, to) = best?;
+    let conductivity = conductivity(object, shore.atlas.map_uv_under(object, texel)?);
+    Some(Stride { texel: texel as u32, from, to, read: shore.read(&arrival)?, conductivity })
+}
+
+/// The step as much longer or shorter as it takes to reach a row or a column of texels' centres: two texels are read there, not four.
+fn onto_the_grid(step: Vec2) -> Vec2 {
+    let longer = step.abs().max_element();
+    step * (longer.round().max(1.0) / longer)
+}
+
+fn place_mm(object: &Object, at: TexelSurface) -> Vec3 {
+    let [a, b, c] = object.mesh.corners_mm(at.triangle as usize);
+    a + (b - a) * at.b1 + (c - a) * at.b2
+}
+
+impl Stride {
+    /// What it links in the pose of an object, by the areas of texels.
+    pub fn element(&self, object: &Object, size: usize, texel_mm: f32, areas_mm2: &[f32]) -> Element {
+        let area_mm2 = areas_mm2[self.texel as usize];
+        let x = derivatives_mm_per_texel(object, self.from.triangle as usize, size);
+        let held_back = x.map_or(0.0, |x| held_back(&Metric::new(x), texel_mm));
+        // The slope is the difference by the length; its square, on the texel's area, is what flows, …
+        let strength = held_back / place_mm(object, self.from).distance_squared(place_mm(object, self.to));
+        // … as much as its rate allows.
+        let most = BUDGET / (SMALLEST * texel_mm).powi(2);
+        let strength = self.conductivity * area_mm2 * strength.min(most);
+        let mut element = Element { links: Vec::new() };
+        for (n, &(i, weight)) in self.read.iter().enumerate() {
+            element.add(self.texel, i, strength * weight);
+            self.read[..n].iter().for_each(|&(j, other)| element.add(i, j, -strength * weight * other));
+        }
+        element
+    }
+}
+
+/// Part of what flows across narrow texels that does not flow from each to the next.
+fn held_back(metric: &Metric, texel_mm: f32) -> f32 {
+    let [whole, cut] = [*metric, metric.cut(true, texel_mm)].map(|metric| metric.strength());
+    if whole > 0.0 { 1.0 - cut / whole } else { 0.0 }
+}

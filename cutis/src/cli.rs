@@ -140,7 +140,8 @@ pub struct RenderArgs {
     /// Shadow rays per texel towards lights with an extent [1 to 1024, default 4]
     #[arg(long, value_name = "N")]
     pub shadow_samples: Option<u32>,
-    /// Measure what the diffusion did: change of energy, mismatch across UV seams
+    /// Measure what the diffusion did: change of energy, mismatch across UV seams, and how wide texels lie on the surface; where
+    /// that differs much, --atlas new serves light better
     #[arg(long)]
     pub diffusion_report: bool,
     /// Ambient-occlusion rays per texel of the occlusion map [1 to 4096, default 6]

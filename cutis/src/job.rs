@@ -163,7 +163,7 @@ fn source(args: &RenderArgs, paper: Option<Paper>) -> Result<SceneSource> {
     maps.into_iter().chain([&args.scene]).flatten().try_for_each(|path| must_exist(path))?;
     let options = ReadOptions {
         millimetres_per_unit: millimetres,
-        atlas: atlas(args)?,
+        atlas: atlas(args.atlas.as_deref(), args.scene.is_some())?,
         albedo: args.albedo.clone(),
         normal: args.normal.clone(),
         specular: args.specular.clone(),
@@ -180,9 +180,10 @@ fn source(args: &RenderArgs, paper: Option<Paper>) -> Result<SceneSource> {
     })
 }
 
-fn atlas(args: &RenderArgs) -> Result<Option<AtlasChoice>> {
-    let choice = AtlasChoice::ALL.into_iter().find(|choice| Some(choice.name()) == args.atlas.as_deref());
-    if args.scene.is_none() && choice == Some(AtlasChoice::New) {
+/// Where light is to lie, by the word of `--atlas`.
+pub fn atlas(word: Option<&str>, has_file: bool) -> Result<Option<AtlasChoice>> {
+    let choice = AtlasChoice::ALL.into_iter().find(|choice| Some(choice.name()) == word);
+    if !has_file && choice == Some(AtlasChoice::New) {
         return Err(miette!("--atlas new is for mesh files; the built-in head has an atlas of its own"));
     }
     Ok(choice)

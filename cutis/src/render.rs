@@ -47,10 +47,11 @@ pub fn run(args: &RenderArgs, verbose: u8) -> Result<Outcome> {
     Ok(if written.broken_pixels == 0 { Outcome::Done } else { Outcome::CheckFailed })
 }
 
-/// One line on what the diffusion did to energy and seams.
+/// What the diffusion did to energy and seams, and what texels it had.
 fn say_report(report: &DiffusionReport) -> Result<()> {
     talk::say(&format!(
-        "{}: energy {:.0} -> {:.0} W/m² mm² ({:+.3} %), {} seam edges, mismatch mean {:.2} %, 99th percentile {:.2} %",
+        "{}: energy {:.0} -> {:.0} W/m² mm² ({:+.3} %), {} seam edges, mismatch mean {:.2} %, 99th percentile {:.2} %; \
+         texels are {:.2} to {:.2} mm wide under all but 1 % of the surface at either end, alike they would be {:.2} mm",
         report.object,
         report.energy_before_w_per_m2_mm2,
         report.energy_after_w_per_m2_mm2,
@@ -58,6 +59,9 @@ fn say_report(report: &DiffusionReport) -> Result<()> {
         report.seam_edges,
         100.0 * report.seam_error_mean,
         100.0 * report.seam_error_p99,
+        report.texels.narrowest_mm,
+        report.texels.widest_mm,
+        report.texels.even_mm,
     ))
 }
 

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::{TINY, assert_refused, names, run, stderr, stdout};
+use common::{TINY, assert_refused, cutis, names, number, run, stderr, stdout};
 use exr::prelude::{ReadChannels, ReadLayers};
 use std::path::Path;
 
@@ -144,4 +144,32 @@ fn layers_that_are_not_there_are_told() {
     assert_eq!(output.status.code(), Some(0));
     assert!(stderr(&output).contains("no layer 'normal'"), "{}", stderr(&output));
     assert_eq!(names(folder.path()), ["cutis.png"]);
+}
+
+/// Two squares of 20 mm, one on forty times as many texels along u as the other: in an atlas that is made texels are alike.
+#[test]
+fn texels_of_very_different_widths_are_told_and_mended() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mesh = "v 0 0 0\nv 20 0 0\nv 20 20 0\nv 0 20 0\nv 30 0 0\nv 50 0 0\nv 50 20 0\nv 30 20 0\n\
+                vt 0.01 0.1\nvt 0.03 0.1\nvt 0.03 0.9\nvt 0.01 0.9\nvt 0.1 0.1\nvt 0.9 0.1\nvt 0.9 0.9\nvt 0.1 0.9\n\
+                f 1/1 2/2 3/3\nf 1/1 3/3 4/4\nf 5/5 6/6 7/7\nf 5/5 7/7 8/8\n";
+    std::fs::write(folder.path().join("squares.obj"), mesh).expect("written");
+    let texels_mm = |atlas: &str| {
+        let mut command = cutis(folder.path());
+        // No atlas is kept in the user's cache.
+        command.env("CUTIS_CACHE", "").args(["render", "squares.obj", "--backend", "cpu", "--size", "32x32"]);
+        command.args(["--millimetres-per-unit", "1", "--irradiance-size", "64", "--ambient-samples", "1"]);
+        let output =
+            command.args(["--diffusion-report", "--json", "--atlas", atlas]).output().expect("starts");
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let json: serde_json::Value = serde_json::from_str(&stdout(&output)).expect("one JSON object");
+        let texels = &json["diffusion_reports"][0]["texels"];
+        ["narrowest_mm", "widest_mm", "even_mm"].map(|name| number(&texels[name]))
+    };
+    let [narrowest, widest, even] = texels_mm("own");
+    // 0.8 of 64 texels for 20 mm, and 0.02 of them; squares of 0.656 of the texture for 800 mm².
+    assert!((narrowest - 0.390_625).abs() < 1e-3 && (widest - 15.625).abs() < 0.01, "{narrowest} {widest}");
+    assert!((even - (800.0f64 / 0.656).sqrt() / 64.0).abs() < 1e-3, "{even}");
+    let [narrowest, widest, even] = texels_mm("new");
+    assert!(widest < 1.02 * narrowest && (narrowest..=widest).contains(&even), "{narrowest} {widest} {even}");
 }

@@ -75,6 +75,8 @@ fn nonsense_ends_with_code_2_and_one_clear_line() {
         (&["-o", "a.tga"], ".png (8 or 16 bits) and .exr"),
         (&["-o", "a"], "without extension"),
         (&["-o", "a.png", "--bits", "32"], "8 or 16 bits per channel, not 32"),
+        (&["--atlas", "new"], "--atlas new is for mesh files"),
+        (&["--atlas", "old"], "own, new"),
         (&["--no-such-flag"], "--no-such-flag"),
     ];
     for (args, words) in cases {

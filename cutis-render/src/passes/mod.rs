@@ -18,6 +18,7 @@ pub mod smooth;
 pub mod specular;
 pub mod stretch;
 pub mod tap;
+pub mod texel_widths;
 pub mod thin_parts;
 pub mod transmission;
 pub mod visibility;

@@ -1,8 +1,9 @@
-//! How good the diffusion is: energy kept, and light that does not match across seams.
+//! How good the diffusion is: energy kept, light that does not match across seams, and how wide its texels are.
 
 use crate::passes::atlas::charts_that_hold_light;
 use crate::passes::diffusion::Diffused;
 use crate::passes::object_maps::ObjectMaps;
+use crate::passes::texel_widths::TexelWidths;
 use cutis_scene::Object;
 use cutis_scene::charts::Seam;
 use glam::{Vec2, Vec3};
@@ -27,6 +28,8 @@ pub struct DiffusionReport {
     pub seam_error_mean: f64,
     /// The same, 99th percentile.
     pub seam_error_p99: f64,
+    /// Widths of the light's texels on the surface.
+    pub texels: TexelWidths,
 }
 
 /// Measures an object's diffused light.
@@ -43,6 +46,7 @@ pub fn diffusion_report(object: &Object, maps: &ObjectMaps) -> DiffusionReport {
         seam_edges: object.charts.seams.len(),
         seam_error_mean: mean,
         seam_error_p99: p99,
+        texels: TexelWidths::new(object, maps.atlas.size),
     }
 }
 

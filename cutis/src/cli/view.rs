@@ -3,6 +3,7 @@
 use super::names;
 use crate::backend::Backend;
 use clap::Args;
+use cutis_scene::AtlasChoice;
 use std::path::PathBuf;
 
 /// Arguments of `cutis view`.
@@ -17,6 +18,10 @@ pub struct ViewArgs {
     /// Length of the mesh file's unit [mm, above 0, default: what the file says; 1000 for glTF]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub millimetres_per_unit: Option<f32>,
+    /// Where light lies: own: where the mesh's texture coordinates say, if they can carry it; new: in an atlas that is made, with
+    /// texels of one size [own or new, default: what the scene file says, else own]
+    #[arg(long, value_name = "NAME", value_parser = names(AtlasChoice::ALL.map(AtlasChoice::name)))]
+    pub atlas: Option<String>,
     /// Latitude-longitude map that lights the scene from all around (.exr or .hdr), instead of its own
     #[arg(long, value_name = "FILE")]
     pub environment: Option<PathBuf>,

@@ -23,7 +23,7 @@ mod wireframe;
 use crate::Outcome;
 use crate::backend::Backend;
 use crate::cli::ViewArgs;
-use crate::job::{must_exist, named};
+use crate::job::{atlas, must_exist, named};
 use crate::scene_source::SceneSource;
 use app::Viewer;
 use cutis_render::Settings;
@@ -58,7 +58,12 @@ pub fn run(args: &ViewArgs) -> Result<Outcome> {
 
 fn source(args: &ViewArgs) -> Result<SceneSource> {
     [&args.scene, &args.environment].into_iter().flatten().try_for_each(|path| must_exist(path))?;
-    let options = ReadOptions { millimetres_per_unit: args.millimetres_per_unit, ..ReadOptions::default() };
+    let options = ReadOptions {
+        millimetres_per_unit: args.millimetres_per_unit,
+        // Files may be dropped into the window later.
+        atlas: atlas(args.atlas.as_deref(), true)?,
+        ..ReadOptions::default()
+    };
     if options.millimetres_per_unit.is_some_and(|mm| !(mm > 0.0 && mm.is_finite())) {
         return Err(miette!("--millimetres-per-unit must be above 0 mm"));
     }

@@ -191,26 +191,31 @@ fn even_light_stays_even_on_a_closed_body() {
     assert!(off < 1e-4, "{off}");
 }
 
-/// The slowest wave of a ball, cos of the angle from an axis, falls by exp(-v/R²), within 1 % by area. At the poles of its texture
-/// texels are slivers, across which heat flows too slowly: there up to a fifth is missed.
+/// The slowest wave of a ball, cos of the angle from an axis, falls by exp(-v/R²). Towards the poles of its texture texels become
+/// slivers, and at the poles all columns meet as seams: by area the error is small.
 #[test]
 fn the_slowest_wave_of_a_ball_falls_as_it_should() {
     const RADIUS_MM: f32 = 10.0;
+    const NEAR_MM: f32 = 0.5;
     let ball = Object::new("ball", shapes::capsule(Vec3::ZERO, RADIUS_MM, 0.0, 128), Material::default());
     for axis in [Vec3::X, Vec3::Y] {
         let wave = |p: Vec3| 1.0 + p.normalize().dot(axis);
         let lit = flown(&ball, 256, 20.0, wave);
         let fall = (-20.0 / (RADIUS_MM * RADIUS_MM)).exp();
         let off = |l: &Lit| (l.after - 1.0 - (wave(l.place_mm) - 1.0) * fall).abs();
+        let worst = |near_poles: bool| {
+            let all = lit.iter().filter(|l| (l.place_mm.x.hypot(l.place_mm.z) < NEAR_MM) == near_poles);
+            all.map(off).fold(0.0, f32::max)
+        };
         let mean = lit.iter().map(|l| off(l) * l.area_mm2).sum::<f32>()
             / lit.iter().map(|l| l.area_mm2).sum::<f32>();
-        let worst = lit.iter().max_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
-        eprintln!("{axis}: mean error {mean}, worst {} at {}", off(worst), worst.place_mm);
-        assert!(mean < 0.01 && off(worst) < 0.25, "{axis}: {mean} {}", off(worst));
+        let (poles, elsewhere) = (worst(true), worst(false));
+        eprintln!("{axis}: mean error {mean}, worst {elsewhere}, near poles {poles}");
+        assert!(mean < 0.005 && elsewhere < 0.035 && poles < 0.06, "{axis}: {mean} {elsewhere} {poles}");
     }
 }
 
-/// In an atlas that is made for it, with texels of one size, it does so everywhere.
+/// In an atlas that is made for it, with even texels, it does so everywhere.
 #[test]
 fn a_ball_in_a_new_atlas_is_right_everywhere() {
     const RADIUS_MM: f32 = 10.0;
@@ -347,7 +352,7 @@ fn no_input_makes_it_explode() {
             "seed {seed}, rough {rough}, torn {torn}: at most {most:.3}, squares {left:.4?}, energy {change:e}"
         );
         assert!(
-            left.is_sorted_by(|a, b| a >= b) && left.iter().all(|left| *left < 1.0),
+            left.is_sorted_by(|a, b| a >= b) && left.iter().all(|left| *left <= 1.0),
             "seed {seed}: {left:?}"
         );
         assert!(most < 2.5, "seed {seed}: {most}");

@@ -176,7 +176,7 @@ pub struct RenderArgs {
     #[arg(long, value_name = "NAME", value_parser = names(presets::all().iter().map(|preset| preset.name)))]
     pub material: Option<String>,
     /// Where light lies: own: where the mesh's texture coordinates say, if they can carry it; new: in an atlas that is made, with
-    /// texels of one size [own or new, default: what the scene file says, else own]
+    /// even texels [own or new, default: what the scene file says, else own]
     #[arg(long, value_name = "NAME", value_parser = names(AtlasChoice::ALL.map(AtlasChoice::name)))]
     pub atlas: Option<String>,
     /// Diffuse colour texture for all objects, instead of their own

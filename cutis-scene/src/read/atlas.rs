@@ -28,8 +28,8 @@ const MAX_BOX_SUM: f32 = 64.0;
 
 /// Part of the surface that may have next to no area in the texture: a mouth's inside, say, that nobody sees.
 const MAX_BARE_FRACTION: f32 = 0.01;
-/// Area in the texture, by that on the surface and the mean of both, that is next to none: texels are a hundred times as wide.
-const BARE: f64 = 1e-4;
+/// Area in the texture, by that on the surface and the mean of both, that is next to none: texels are a thousand times as wide.
+const BARE: f64 = 1e-6;
 
 /// Gives a mesh an atlas for light if that was chosen, or if its texture coordinates, as far as it has them, cannot be one; tells what
 /// was done that nobody asked for.
@@ -224,11 +224,11 @@ mod tests {
         assert_eq!(trouble_of(&mesh), None);
     }
 
-    /// An island of a thousandth of the size that it should have is as good as none.
+    /// An island of a ten-thousandth of the size that it should have is as good as none.
     #[test]
     fn a_surface_with_next_to_no_place_in_the_texture_is_told() {
         let mut mesh = triangles(&[[0.0, 0.0], [0.5, 0.5]]);
-        mesh.uvs[3..].iter_mut().for_each(|uv| *uv = 0.9 + 1e-3 * *uv);
+        mesh.uvs[3..].iter_mut().for_each(|uv| *uv = 0.9 + 1e-4 * *uv);
         let words = give_atlas(&mut mesh, Textured::Whole, AtlasChoice::Own, &ReadOptions::default());
         assert!(words.expect("it has coordinates").expect("told").starts_with("50.0 % of the surface"));
         assert_eq!(trouble_of(&mesh), None);

@@ -50,7 +50,7 @@ pub enum AtlasChoice {
     /// Where the mesh's texture coordinates say, if they can carry it; else in an atlas that is made.
     #[default]
     Own,
-    /// In an atlas that is made, with texels of one size: where the mesh's own are slivers, light spreads too slowly.
+    /// In an atlas that is made, with even texels: where the mesh's own are slivers, light spreads too slowly.
     New,
 }
 

@@ -19,7 +19,7 @@ pub struct ViewArgs {
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub millimetres_per_unit: Option<f32>,
     /// Where light lies: own: where the mesh's texture coordinates say, if they can carry it; new: in an atlas that is made, with
-    /// texels of one size [own or new, default: what the scene file says, else own]
+    /// even texels [own or new, default: what the scene file says, else own]
     #[arg(long, value_name = "NAME", value_parser = names(AtlasChoice::ALL.map(AtlasChoice::name)))]
     pub atlas: Option<String>,
     /// Latitude-longitude map that lights the scene from all around (.exr or .hdr), instead of its own

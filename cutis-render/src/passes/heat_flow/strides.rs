@@ -128,13 +128,16 @@ impl Stride {
     /// What it links in the pose of an object, by the areas of texels.
     pub fn element(&self, object: &Object, size: usize, texel_mm: f32, areas_mm2: &[f32]) -> Element {
         let area_mm2 = areas_mm2[self.texel as usize];
+        // What a texel can bear, by the part of the step that it has.
+        let bearable_mm2 = self.read.iter().map(|&(i, weight)| areas_mm2[i as usize] / weight);
+        let least_mm2 = bearable_mm2.fold(area_mm2, f32::min);
         let x = derivatives_mm_per_texel(object, self.from.triangle as usize, size);
         let held_back = x.map_or(0.0, |x| held_back(&Metric::new(x), texel_mm));
         // The slope is the difference by the length; its square, on the texel's area, is what flows, …
         let strength = held_back / place_mm(object, self.from).distance_squared(place_mm(object, self.to));
         // … as much as its rate allows.
         let most = BUDGET / (SMALLEST * texel_mm).powi(2);
-        let strength = self.conductivity * area_mm2 * strength.min(most);
+        let strength = self.conductivity * (area_mm2 * strength).min(least_mm2 * most);
         let mut element = Element { links: Vec::new() };
         for (n, &(i, weight)) in self.read.iter().enumerate() {
             element.add(self.texel, i, strength * weight);

@@ -106,6 +106,8 @@ const FIRST_STEP_TEXEL2: f32 = 1.1;
 const BILINEAR_TEXEL2: f32 = 1.0 / 6.0;
 /// Texels that are asked for the median of their size.
 const MEDIAN_TEXELS: usize = 1 << 14;
+/// Charts of fewer texels do not count in it.
+const TELLING_TEXELS: usize = 4;
 /// Variance that averaging two neighbours adds, in texel² of the halved texture: (1/2)² of the finer, 1/16 here.
 const HALVING_TEXEL2: f32 = 1.0 / 16.0;
 
@@ -237,9 +239,14 @@ impl State {
 
 /// The texel size (the smaller of both directions) below which half of the surface lies, mm.
 pub fn median_texel_mm(charts: &ChartMap, stretch_mm: &[Vec2]) -> f32 {
+    // Texels that a chart thinner than they are has claimed stand for less of the surface than their stretch tells.
+    let count = charts.chart.iter().filter(|c| **c != NO_CHART).max().map_or(0, |&last| last as usize + 1);
+    let mut texels = vec![0; count];
+    charts.chart.iter().filter(|c| **c != NO_CHART).for_each(|&c| texels[c as usize] += 1);
+    let tells = |c: u32| c != NO_CHART && texels[c as usize] >= TELLING_TEXELS;
     // A few thousand texels are plenty for a median; an odd stride divides no texture size.
     let stride = (stretch_mm.len() / MEDIAN_TEXELS) | 1;
-    let covered = charts.chart.iter().zip(stretch_mm).step_by(stride).filter(|(c, _)| **c != NO_CHART);
+    let covered = charts.chart.iter().zip(stretch_mm).step_by(stride).filter(|(c, _)| tells(**c));
     let mut sizes: Vec<(f32, f64)> = covered.map(|(_, s)| (s.min_element(), f64::from(s.x * s.y))).collect();
     sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
     let total: f64 = sizes.iter().map(|s| s.1).sum();
@@ -278,4 +285,23 @@ where
         sum * count.recip()
     };
     (0..coarse.size * coarse.size).into_par_iter().map(mean).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Half of the surface, by area, lies under texels of 1 mm or less; three texels that a needle has claimed, a metre wide by its
+    /// stretch, change nothing.
+    #[test]
+    fn the_usual_texel_is_none_that_a_needle_claims() {
+        let map = |needle: usize| {
+            let chart_of = |i: usize| if i < needle { 1 } else { 0 };
+            let stretch_mm =
+                |i: usize| Vec2::splat(if i < needle { 1000.0 } else { [1.0, 2.0][i % 16 / 13] });
+            let charts = ChartMap::new(16, (0..256).map(chart_of).collect());
+            median_texel_mm(&charts, &(0..256).map(stretch_mm).collect::<Vec<_>>())
+        };
+        assert_eq!([map(0), map(3), map(4)], [1.0, 1.0, 1000.0]);
+    }
 }

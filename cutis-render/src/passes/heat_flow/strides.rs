@@ -26,6 +26,8 @@ const TRIES: usize = 6;
 const EVERY: usize = 2;
 /// Most texels of a step.
 const MOST_TEXELS: f32 = 128.0;
+/// Weight below which a texel is left out of a read: it would cost as much as others.
+const NEGLIGIBLE: f32 = 0.3;
 /// Part of the fastest rate that steps may take: each links its texel, and is read by others. The other half of that rate is for what
 /// flows from texel to texel.
 const BUDGET: f32 = 0.5;
@@ -109,7 +111,11 @@ fn stride(object: &Object, shore: &Shore, texel: usize, step: Vec2, texel_mm: f3
     }
     let (_, arrival, to) = best?;
     let conductivity = conductivity(object, shore.atlas.map_uv_under(object, texel)?);
-    Some(Stride { texel: texel as u32, from, to, read: shore.read(&arrival)?, conductivity })
+    let mut read = shore.read(&arrival)?;
+    read.retain(|(_, weight)| *weight > NEGLIGIBLE);
+    let sum: f32 = read.iter().map(|(_, weight)| weight).sum();
+    read.iter_mut().for_each(|(_, weight)| *weight /= sum);
+    (sum > 0.0).then_some(Stride { texel: texel as u32, from, to, read, conductivity })
 }
 
 /// The step as much longer or shorter as it takes to reach a row or a column of texels' centres: two texels are read there, not four.

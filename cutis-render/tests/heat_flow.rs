@@ -51,7 +51,7 @@ fn a_bump_on_a_plane_widens_whatever_the_layout() {
     }
 }
 
-/// Slivers an eighth as wide as what is beside them are no barrier, whatever their direction.
+/// Slivers a seventh as wide as what is beside them are no barrier, whatever their direction.
 #[test]
 fn heat_crosses_slivers() {
     for (name, object) in [("upright", plane(squeezed)), ("turned", plane(squeezed_and_turned))] {
@@ -352,7 +352,7 @@ fn no_input_makes_it_explode() {
             "seed {seed}, rough {rough}, torn {torn}: at most {most:.3}, squares {left:.4?}, energy {change:e}"
         );
         assert!(
-            left.is_sorted_by(|a, b| a >= b) && left.iter().all(|left| *left <= 1.0),
+            left.is_sorted_by(|a, b| a >= b) && left[0] <= 1.0 && left[left.len() - 1] < 1.0,
             "seed {seed}: {left:?}"
         );
         assert!(most < 2.5, "seed {seed}: {most}");

@@ -106,8 +106,8 @@ const FIRST_STEP_TEXEL2: f32 = 1.1;
 const BILINEAR_TEXEL2: f32 = 1.0 / 6.0;
 /// Texels that are asked for the median of their size.
 const MEDIAN_TEXELS: usize = 1 << 14;
-/// Charts of fewer texels do not count in it.
-const TELLING_TEXELS: usize = 4;
+/// Charts of fewer texels do not count in it, if others do: one with two rings of padding around it.
+const TELLING_TEXELS: usize = 26;
 /// Variance that averaging two neighbours adds, in texel² of the halved texture: (1/2)² of the finer, 1/16 here.
 const HALVING_TEXEL2: f32 = 1.0 / 16.0;
 
@@ -243,7 +243,8 @@ pub fn median_texel_mm(charts: &ChartMap, stretch_mm: &[Vec2]) -> f32 {
     let count = charts.chart.iter().filter(|c| **c != NO_CHART).max().map_or(0, |&last| last as usize + 1);
     let mut texels = vec![0; count];
     charts.chart.iter().filter(|c| **c != NO_CHART).for_each(|&c| texels[c as usize] += 1);
-    let tells = |c: u32| c != NO_CHART && texels[c as usize] >= TELLING_TEXELS;
+    let least = if texels.iter().any(|&count| count >= TELLING_TEXELS) { TELLING_TEXELS } else { 0 };
+    let tells = |c: u32| c != NO_CHART && texels[c as usize] >= least;
     // A few thousand texels are plenty for a median; an odd stride divides no texture size.
     let stride = (stretch_mm.len() / MEDIAN_TEXELS) | 1;
     let covered = charts.chart.iter().zip(stretch_mm).step_by(stride).filter(|(c, _)| tells(**c));
@@ -291,8 +292,8 @@ where
 mod tests {
     use super::*;
 
-    /// Half of the surface, by area, lies under texels of 1 mm or less; three texels that a needle has claimed, a metre wide by its
-    /// stretch, change nothing.
+    /// Half of the surface, by area, lies under texels of 1 mm or less; a texel that a needle has claimed and its padding, a metre wide
+    /// by their stretch, change nothing, unless there is nothing else.
     #[test]
     fn the_usual_texel_is_none_that_a_needle_claims() {
         let map = |needle: usize| {
@@ -302,6 +303,8 @@ mod tests {
             let charts = ChartMap::new(16, (0..256).map(chart_of).collect());
             median_texel_mm(&charts, &(0..256).map(stretch_mm).collect::<Vec<_>>())
         };
-        assert_eq!([map(0), map(3), map(4)], [1.0, 1.0, 1000.0]);
+        assert_eq!([map(0), map(25), map(26), map(256)], [1.0, 1.0, 1000.0, 1000.0]);
+        let alone = ChartMap::new(2, vec![0, 1, 2, 3]);
+        assert_eq!(median_texel_mm(&alone, &[Vec2::splat(2.0); 4]), 2.0);
     }
 }

@@ -65,7 +65,7 @@ pub fn bent(place: Vec2, _: [usize; 2]) -> Vec2 {
     0.5 + Vec2::new(0.36 * x, 0.42 * (place.y + 0.1 * place.y * place.x * place.x) + 0.03 * x)
 }
 
-/// A strip of 2.5 mm in the middle with a third of the texture: texels there are nine times as narrow as beside it.
+/// A strip of 2.5 mm in the middle with a third of the texture: texels there are a seventh as wide as beside it.
 pub fn squeezed(place: Vec2, _: [usize; 2]) -> Vec2 {
     const STRIP: f32 = 1.0 / 16.0;
     let beside = (place.x.abs() - STRIP).max(0.0) / (1.0 - STRIP);

@@ -24,9 +24,9 @@ const ABOUT: std::ops::Range<f32> = 0.75..1.5;
 const TRIES: usize = 6;
 /// One of so many texels takes them, for all.
 const EVERY: usize = 2;
-/// Most texels of a step.
+/// Most texels of a first try.
 const MOST_TEXELS: f32 = 128.0;
-/// Weight below which a texel is left out of a read: it would cost as much as others.
+/// Weight below which a texel is left out of a read, unless none has more: it would cost as much as others.
 const NEGLIGIBLE: f32 = 0.3;
 /// Part of the fastest rate that steps may take: each links its texel, and is read by others. The other half of that rate is for what
 /// flows from texel to texel.
@@ -112,7 +112,8 @@ fn stride(object: &Object, shore: &Shore, texel: usize, step: Vec2, texel_mm: f3
     let (_, arrival, to) = best?;
     let conductivity = conductivity(object, shore.atlas.map_uv_under(object, texel)?);
     let mut read = shore.read(&arrival)?;
-    read.retain(|(_, weight)| *weight > NEGLIGIBLE);
+    let most = read.iter().map(|(_, weight)| *weight).fold(0.0, f32::max);
+    read.retain(|(_, weight)| *weight > NEGLIGIBLE.min(0.99 * most));
     let sum: f32 = read.iter().map(|(_, weight)| weight).sum();
     read.iter_mut().for_each(|(_, weight)| *weight /= sum);
     (sum > 0.0).then_some(Stride { texel: texel as u32, from, to, read, conductivity })

@@ -13,8 +13,8 @@ use cutis_scene::validation::shapes;
 use cutis_scene::{Material, Object, ScalarMap, Texels, Texture};
 use glam::{Mat2, Vec2, Vec3};
 use sheets::{
-    Lit, QUADS, bent, flown, in_four, in_pieces, noise, plane, slanted, squeezed, squeezed_and_turned, tube,
-    upright, whole,
+    Lit, QUADS, bent, flown, in_four, in_pieces, noise, plane, slanted, squeezed, squeezed_along_v,
+    squeezed_and_turned, tube, upright, whole,
 };
 use std::sync::Arc;
 
@@ -54,7 +54,11 @@ fn a_bump_on_a_plane_widens_whatever_the_layout() {
 /// Slivers a seventh as wide as what is beside them are no barrier, whatever their direction.
 #[test]
 fn heat_crosses_slivers() {
-    for (name, object) in [("upright", plane(squeezed)), ("turned", plane(squeezed_and_turned))] {
+    for (name, object) in [
+        ("upright", plane(squeezed)),
+        ("turned", plane(squeezed_and_turned)),
+        ("along v", plane(squeezed_along_v)),
+    ] {
         for variance_mm2 in [1.2, 6.0, 24.0] {
             let worst = widened(&object, 512, variance_mm2);
             eprintln!("{name}, {variance_mm2} mm²: {worst:.4} of the peak");

@@ -1,6 +1,6 @@
 //! How wide the texels of light lie on the surface: where they are slivers, or far wider than elsewhere, light is less true.
 
-use crate::passes::stretch::derivatives_mm;
+use crate::passes::heat_flow::metric::{Metric, derivatives_mm_per_texel};
 use cutis_scene::Object;
 
 /// Part of the surface at either end whose texels are not told: a few slivers hide in every atlas.
@@ -21,34 +21,27 @@ impl TexelWidths {
     /// Of maps of `size` texels along each side. All are 0 where nothing has an area in the texture.
     pub fn new(object: &Object, size: usize) -> Self {
         let (mut narrow, mut wide) = (Vec::new(), Vec::new());
-        let (mut surface_mm2, mut in_texture) = (0.0, 0.0);
+        let (mut surface_mm2, mut texels) = (0.0, 0.0);
         for triangle in 0..object.mesh.triangles.len() {
-            let Some([along_u, along_v]) = derivatives_mm(object, triangle) else { continue };
-            let [a, b, c] = object.mesh.corner_atlas_uvs(triangle);
+            let Some(x) = derivatives_mm_per_texel(object, triangle, size) else { continue };
+            let metric = Metric::new(x);
             let area_mm2 = f64::from(object.mesh.area_mm2(triangle));
-            surface_mm2 += area_mm2;
-            in_texture += 0.5 * f64::from((b - a).perp_dot(c - a).abs());
-            let [narrower, wider] = singular_values([along_u, along_v].map(|d| d.as_dvec3()));
-            narrow.push((narrower, area_mm2));
-            wide.push((wider, area_mm2));
+            if metric.area_mm2 > 0.0 {
+                surface_mm2 += area_mm2;
+                texels += area_mm2 / f64::from(metric.area_mm2);
+                narrow.push((f64::from(metric.narrowest_mm()), area_mm2));
+                wide.push((f64::from(metric.widest_mm()), area_mm2));
+            }
         }
         if surface_mm2 <= 0.0 {
             return Self { narrowest_mm: 0.0, widest_mm: 0.0, even_mm: 0.0 };
         }
-        let size = size as f64;
         Self {
-            narrowest_mm: quantile(narrow, LEFT_OUT * surface_mm2) / size,
-            widest_mm: quantile(wide, (1.0 - LEFT_OUT) * surface_mm2) / size,
-            even_mm: (surface_mm2 / in_texture).sqrt() / size,
+            narrowest_mm: quantile(narrow, LEFT_OUT * surface_mm2),
+            widest_mm: quantile(wide, (1.0 - LEFT_OUT) * surface_mm2),
+            even_mm: (surface_mm2 / texels).sqrt(),
         }
     }
-}
-
-/// Lengths of the shortest and the longest way that a unit step in the texture may be.
-fn singular_values([along_u, along_v]: [glam::DVec3; 2]) -> [f64; 2] {
-    let (e, f, g) = (along_u.length_squared(), along_u.dot(along_v), along_v.length_squared());
-    let (mean, apart) = (0.5 * (e + g), (0.25 * (e - g).powi(2) + f * f).sqrt());
-    [mean - apart, mean + apart].map(|squared| squared.max(0.0).sqrt())
 }
 
 /// The width up to which triangles have that area together.

@@ -8,7 +8,7 @@ use cutis_render::passes::diffusion::DiffusionOperator;
 use cutis_render::passes::heat_flow::HeatFlow;
 use cutis_render::passes::stretch::stretch_mm_per_texel;
 use cutis_scene::{Material, Mesh, Object};
-use glam::{Mat2, Vec2, Vec3, Vec4};
+use glam::{Mat2, Vec2, Vec2Swizzles, Vec3, Vec4};
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 
@@ -77,6 +77,13 @@ pub fn squeezed(place: Vec2, _: [usize; 2]) -> Vec2 {
 pub fn squeezed_and_turned(place: Vec2, quadrant: [usize; 2]) -> Vec2 {
     let p = squeezed(place, quadrant) - 0.5;
     0.5 + Mat2::from_angle(0.4) * Vec2::new(p.x, p.y + 0.4 * p.x) * 0.62
+}
+
+/// The other way round: squeezed along v, with corners off by half a texel of 512 at random, so that no two quads have slivers of quite
+/// one direction.
+pub fn squeezed_along_v(place: Vec2, quadrant: [usize; 2]) -> Vec2 {
+    let number = ((place.x * 64.0).round() as i32 * 7919 + (place.y * 64.0).round() as i32) as usize;
+    squeezed(place.yx(), quadrant).yx() + (Vec2::new(noise(number, 1), noise(number, 2)) - 0.5) / 512.0
 }
 
 /// Cut at random into pieces, each turned by a random angle and placed on a square of its own.

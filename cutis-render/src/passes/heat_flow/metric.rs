@@ -15,6 +15,9 @@ pub const SMALLEST: f32 = 0.63;
 /// Part of that pace which is left to texels with longer steps ([`super::strides`]).
 const BESIDE_STRIDES: f32 = 0.5;
 
+/// Across no direction that many slivers have: neither an axis nor a diagonal.
+const AHEAD: Vec2 = Vec2::new(0.9, 0.4);
+
 /// The metric under one texel.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Metric {
@@ -51,15 +54,21 @@ impl Metric {
         (self.area_mm2 / largest(self.a).max(f32::MIN_POSITIVE)).sqrt()
     }
 
-    /// The direction in the texture in which that is.
+    /// The longest way across it, mm.
+    pub fn widest_mm(&self) -> f32 {
+        let low = self.a.x + self.a.z - largest(self.a);
+        (self.area_mm2 / low.max(f32::MIN_POSITIVE)).sqrt()
+    }
+
+    /// The direction in the texture in which the shortest way leads.
     pub fn narrow_direction(&self) -> Vec2 {
         let Vec3 { x, y, z } = self.a;
         let low = x + z - largest(self.a);
         // Both columns of what is left without the smaller eigenvalue; the longer one is less of a rounding.
         let (one, other) = (Vec2::new(x - low, y), Vec2::new(y, z - low));
         let longer = if one.length_squared() > other.length_squared() { one } else { other };
-        // Towards growing u, so that neighbours agree.
-        let towards = if longer.x < 0.0 { -longer } else { longer };
+        // Neighbours agree which way it points, unless it lies across [`AHEAD`].
+        let towards = if longer.dot(AHEAD) < 0.0 { -longer } else { longer };
         towards.try_normalize().unwrap_or(Vec2::X)
     }
 

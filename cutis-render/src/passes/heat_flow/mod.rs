@@ -14,7 +14,7 @@ pub mod coarse;
 mod elements;
 pub mod exchange;
 mod gaps;
-mod metric;
+pub mod metric;
 mod padding;
 mod pattern;
 mod row;

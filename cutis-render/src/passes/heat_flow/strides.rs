@@ -81,15 +81,28 @@ fn across(object: &Object, triangle: u32, size: usize, texel_mm: f32) -> Option<
     Some((step, xu * step.x + xv * step.y))
 }
 
-/// A step from a texel, made longer or shorter until it is about as long as it should be; none beyond open borders.
+/// A step from a texel; none beyond open borders.
 fn stride(object: &Object, shore: &Shore, texel: usize, step: Vec2, texel_mm: f32) -> Option<Stride> {
+    let (arrival, to) = landing(object, shore, texel, step, texel_mm)?;
+    let conductivity = conductivity(object, shore.atlas.map_uv_under(object, texel)?);
+    let read = without_negligible(shore.read(&arrival)?);
+    Some(Stride { texel: texel as u32, from: shore.atlas.surface[texel], to, read, conductivity })
+}
+
+/// Where a step from a texel leads, made longer or shorter until it is about as long as it should be.
+fn landing(
+    object: &Object,
+    shore: &Shore,
+    texel: usize,
+    step: Vec2,
+    texel_mm: f32,
+) -> Option<(Arrival, TexelSurface)> {
     let size = shore.size();
     let from = shore.atlas.surface[texel];
     let (mut part, mut too_short, mut too_long) = (1.0, 0.0, f32::INFINITY);
     let mut best: Option<(f32, Arrival, TexelSurface)> = None;
     for _ in 0..TRIES {
-        let on_grid = onto_the_grid(step * part);
-        let arrival = shore.ground.walk(from.triangle, centre(texel, size), on_grid);
+        let arrival = shore.ground.walk(from.triangle, centre(texel, size), onto_the_grid(step * part));
         let corners = object.mesh.corner_atlas_uvs(arrival.triangle as usize);
         let [b1, b2] = inside(barycentric(corners, arrival.place / size as f32));
         let to = TexelSurface { triangle: arrival.triangle, b1, b2 };
@@ -101,22 +114,21 @@ fn stride(object: &Object, shore: &Shore, texel: usize, step: Vec2, texel_mm: f3
         if ABOUT.contains(&length) {
             break;
         }
-        if length < ABOUT.start && !arrival.at_border {
-            too_short = part
-        } else {
-            too_long = part
-        }
+        let end = if length < ABOUT.start && !arrival.at_border { &mut too_short } else { &mut too_long };
+        *end = part;
         part =
             if too_long.is_finite() { 0.5 * (too_short + too_long) } else { (part / length).min(3.0 * part) };
     }
-    let (_, arrival, to) = best?;
-    let conductivity = conductivity(object, shore.atlas.map_uv_under(object, texel)?);
-    let mut read = shore.read(&arrival)?;
+    best.map(|(_, arrival, to)| (arrival, to))
+}
+
+/// A read of its larger weights, which sum to 1 again.
+fn without_negligible(mut read: Read) -> Read {
     let most = read.iter().map(|(_, weight)| *weight).fold(0.0, f32::max);
-    read.retain(|(_, weight)| *weight > NEGLIGIBLE.min(0.99 * most));
+    read.retain(|(_, weight)| *weight >= NEGLIGIBLE.min(most));
     let sum: f32 = read.iter().map(|(_, weight)| weight).sum();
     read.iter_mut().for_each(|(_, weight)| *weight /= sum);
-    (sum > 0.0).then_some(Stride { texel: texel as u32, from, to, read, conductivity })
+    read
 }
 
 /// The step as much longer or shorter as it takes to reach a row or a column of texels' centres: two texels are read there, not four.
@@ -126,8 +138,7 @@ fn onto_the_grid(step: Vec2) -> Vec2 {
 }
 
 fn place_mm(object: &Object, at: TexelSurface) -> Vec3 {
-    let [a, b, c] = object.mesh.corners_mm(at.triangle as usize);
-    a + (b - a) * at.b1 + (c - a) * at.b2
+    object.surface_point(at.triangle, at.b1, at.b2).position_mm
 }
 
 impl Stride {

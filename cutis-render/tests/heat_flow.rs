@@ -51,18 +51,20 @@ fn a_bump_on_a_plane_widens_whatever_the_layout() {
     }
 }
 
-/// Slivers a seventh as wide as what is beside them are no barrier, whatever their direction.
+/// Slivers a seventh as wide as what is beside them are no barrier: if they lie along an axis of the texture within 3 %, …
 #[test]
 fn heat_crosses_slivers() {
-    for (name, object) in [
-        ("upright", plane(squeezed)),
-        ("turned", plane(squeezed_and_turned)),
-        ("along v", plane(squeezed_along_v)),
-    ] {
+    let layouts = [
+        ("along u", plane(squeezed), 0.03),
+        ("along v", plane(squeezed_along_v), 0.03),
+        // … else within 12 %, most of them at the strip's ends.
+        ("turned", plane(squeezed_and_turned), 0.12),
+    ];
+    for (name, object, limit) in layouts {
         for variance_mm2 in [1.2, 6.0, 24.0] {
             let worst = widened(&object, 512, variance_mm2);
             eprintln!("{name}, {variance_mm2} mm²: {worst:.4} of the peak");
-            assert!(worst < 0.12, "{name}, {variance_mm2}: {worst}");
+            assert!(worst < limit, "{name}, {variance_mm2}: {worst}");
         }
     }
 }
